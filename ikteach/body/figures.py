@@ -1,0 +1,163 @@
+"""The figures of the course: a planar arm, Buss's Y and double Y, a human of 20 joints."""
+
+from collections.abc import Sequence
+from math import pi, radians, sqrt
+from typing import NamedTuple
+
+from ikteach.body.tree import Effectors, Joint, Tree
+
+X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+TILTED = (sqrt(14) / 8, 1 / 8, 7 / 8)  # the one skew axis of Buss's trees
+
+Vector = Sequence[float]
+
+
+class Figure(NamedTuple):
+    """A body and its effectors."""
+
+    tree: Tree
+    effectors: Effectors
+
+
+def planar_arm(links: int | Sequence[float] = 3) -> Figure:
+    """An arm in the plane z = 0, stretched along x: so many links of 1 m, or links of these [m].
+
+    Its effector is "hand", at the end of the last link.
+    """
+    lengths = [1.0] * links if isinstance(links, int) else [float(length) for length in links]
+    if not lengths or not all(length > 0 for length in lengths):
+        raise ValueError(f"an arm needs links longer than 0, not {links!r}")
+    joints = []
+    for i, offset in enumerate([0.0, *lengths[:-1]], start=1):
+        parent = joints[-1].name if joints else None
+        joints.append(Joint(f"joint{i}", parent, (offset, 0, 0), Z, lower=-pi, upper=pi))
+    tree = Tree.of(joints)
+    hand = (joints[-1].name, (lengths[-1], 0, 0))
+    return Figure(tree, Effectors.of(tree, {"hand": hand}))
+
+
+def y_shape() -> Figure:
+    """Buss's Y: a trunk and two arms of three hinges each, 7 joints and 2 effectors."""
+    rows = [  # name, parent, place in the world at θ = 0, axis
+        ("trunk", None, (0, -0.5, 0), Z),
+        ("right.1", "trunk", (0, 0.4, 0), Z),
+        ("left.1", "trunk", (0, 0.4, 0), Z),
+        ("right.2", "right.1", (0.5, 1.0, 0), X),
+        ("left.2", "left.1", (-0.5, 1.0, 0), X),
+        ("right.3", "right.2", (0.7, 1.3, 0), TILTED),
+        ("left.3", "left.2", (-0.8, 1.5, 0), TILTED),
+    ]
+    return _in_world(rows, {"right": ("right.3", (0.7, 2, 0)), "left": ("left.3", (-0.8, 1.9, 0))})
+
+
+def double_y() -> Figure:
+    """Buss's double Y: a trunk, two boughs and four branches, 25 joints and 4 effectors."""
+    fork, flat, steep = 0.5 / sqrt(2), 0.25, 0.25 * sqrt(3)
+    rows: list[tuple[str, str | None, Vector, Vector]] = [
+        ("trunk.1", None, (0, -1.5, 0), TILTED),
+        ("trunk.2", "trunk.1", (0, -1, 0), X),
+        ("trunk.3", "trunk.2", (0, -1, 0), Z),
+    ]
+    ends = {}
+    for side, x, branches in ("right", 1, ("low", "high")), ("left", -1, ("high", "low")):
+        rows.append((f"{side}.bough", "trunk.3", (0, -0.5, 0), Z))
+        for branch in branches:
+            rise = {"low": flat, "high": steep}[branch]
+            name = f"{side}.{branch}"
+
+            def place(links: int, x: int = x, rise: float = rise) -> Vector:
+                """The point so many links along the branch."""
+                return (x * (fork + links * steep), -0.5 + fork + links * rise, 0)
+
+            rows += [
+                (f"{name}.1", f"{side}.bough", place(0), Y),
+                (f"{name}.2", f"{name}.1", place(0), X),
+                (f"{name}.3", f"{name}.2", place(1), Z),
+                (f"{name}.4", f"{name}.3", place(2), X),
+                (f"{name}.5", f"{name}.4", place(2), Y),
+            ]
+            ends[name] = (f"{name}.5", place(3))
+    return _in_world(rows, ends)
+
+
+def human() -> Figure:
+    """A human of 1.80 m with 20 hinges, pelvis at the origin, x left, y up, z forward.
+
+    Two hinges in the spine, four in each arm, five in each leg; the effectors are the balls of the
+    feet and the hands, in the order of the thesis. Lengths are shares of the body's height after
+    Winter (Biomechanics and Motor Control of Human Movement) and Drillis & Contini (1966); limits
+    are clinical ranges of motion, but for the spine's 30°, which is chosen so that the thesis's
+    statement holds: the targets of running are out of reach (`ikteach.motion.gait`).
+    """
+    tree = Tree.of(
+        [
+            _hinge("spine.bend", None, (0, 0.1476, 0), X, -25, 30),
+            _hinge("spine.twist", "spine.bend", (0, 0, 0), Y, -30, 30),
+            *_arm("l", 1),
+            *_arm("r", -1),
+            *_leg("l", 1),
+            *_leg("r", -1),
+        ]
+    )
+    ball, hand = (0, -0.0702, 0.1286), (0, -0.3612, 0)
+    points = {
+        "foot.l": ("ankle.l", ball),
+        "foot.r": ("ankle.r", ball),
+        "hand.r": ("elbow.r", hand),
+        "hand.l": ("elbow.l", hand),
+    }
+    return Figure(tree, Effectors.of(tree, points))
+
+
+def heels(tree: Tree) -> Effectors:
+    """The heels of `human().tree`, for footprints: they reach for nothing."""
+    heel = (0, -0.0702, -0.0684)
+    return Effectors.of(tree, {f"heel.{side}": (f"ankle.{side}", heel) for side in "lr"})
+
+
+def _arm(side: str, x: int) -> list[Joint]:
+    # The mirror image of a rotation about y or z turns the other way round, one about x does not.
+    bend, out, turn = (f"shoulder.{way}.{side}" for way in ("bend", "out", "turn"))
+    return [
+        _hinge(bend, "spine.twist", (x * 0.2322, 0.3708, 0), (-1, 0, 0), -60, 180),
+        _hinge(out, bend, (0, 0, 0), (0, 0, x), -30, 180),
+        _hinge(turn, out, (0, 0, 0), (0, -x, 0), -90, 70),
+        _hinge(f"elbow.{side}", turn, (0, -0.3348, 0), (-1, 0, 0), 0, 150),
+    ]
+
+
+def _leg(side: str, x: int) -> list[Joint]:
+    bend, out, turn = (f"hip.{way}.{side}" for way in ("bend", "out", "turn"))
+    knee = f"knee.{side}"
+    return [
+        _hinge(bend, None, (x * 0.0835, 0, 0), (-1, 0, 0), -30, 120),
+        _hinge(out, bend, (0, 0, 0), (0, 0, x), -30, 45),
+        _hinge(turn, out, (0, 0, 0), (0, -x, 0), -45, 45),
+        _hinge(knee, turn, (0, -0.441, 0), X, 0, 140),
+        _hinge(f"ankle.{side}", knee, (0, -0.4428, 0), (-1, 0, 0), -50, 20),
+    ]
+
+
+def _hinge(
+    name: str, parent: str | None, offset: Vector, axis: Vector, lower: float, upper: float
+) -> Joint:
+    """A hinge with its limits in degrees."""
+    return Joint(name, parent, offset, axis, lower=radians(lower), upper=radians(upper))
+
+
+def _in_world(
+    rows: Sequence[tuple[str, str | None, Vector, Vector]], ends: dict[str, tuple[str, Vector]]
+) -> Figure:
+    """A figure whose rows are given as Buss gives them: by their places in the world at θ = 0."""
+    places: dict[str | None, Vector] = {name: place for name, _, place, _ in rows}
+    places[None] = (0, 0, 0)
+
+    def offset(place: Vector, parent: str | None) -> Vector:
+        return [a - b for a, b in zip(place, places[parent], strict=True)]
+
+    tree = Tree.of(
+        Joint(name, parent, offset(place, parent), axis, lower=-pi, upper=pi)
+        for name, parent, place, axis in rows
+    )
+    points = {name: (joint, offset(place, joint)) for name, (joint, place) in ends.items()}
+    return Figure(tree, Effectors.of(tree, points))

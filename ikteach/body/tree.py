@@ -1,0 +1,258 @@
+"""The figure as a table: people write rows (`Joint`), the machine keeps columns (`Tree`).
+
+The pose θ is not in here. It is an array of its own, so that one tree serves every pose, every
+method and every figure on the screen at once.
+"""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ikteach.arrays import Array, Index, Mask, frozen
+from ikteach.names import unknown
+
+GROUND = -1
+
+
+@dataclass(frozen=True)
+class Joint:
+    """One degree of freedom: a hinge that turns about `axis`, or a slide that moves along it.
+
+    name      what errors and tables call it
+    parent    the name of the joint it hangs from, or None for the ground
+    offset    (3,) where it sits in the parent's frame [m]
+    axis      (3,) direction in the parent's frame; any length but zero
+    slide     True: θ is a length [m]; False: θ is an angle [rad], right-handed about the axis
+    lower, upper   limits of θ [rad or m]
+    rest      θ of the rest pose [rad or m]; None: the value nearest 0 within the limits
+    mobility  share of its step that the joint takes, from 0 (locked) to 1 (free)
+    """
+
+    name: str
+    parent: str | None = None
+    offset: Sequence[float] = (0.0, 0.0, 0.0)
+    axis: Sequence[float] = (0.0, 0.0, 1.0)
+    slide: bool = False
+    lower: float = -math.inf
+    upper: float = math.inf
+    rest: float | None = None
+    mobility: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Tree:
+    """A body of n one-axis joints, parents before children. Its arrays cannot be written to.
+
+    names               n names
+    parents   (n,)      index of the parent, GROUND (-1) for none
+    offsets   (n, 3)    position in the parent's frame [m]
+    axes      (n, 3)    unit axis in the parent's frame
+    slide     (n,)      True where θ is a length
+    lower, upper, rest  (n,) [rad, or m where slide]
+    mobility  (n,)      0 locked .. 1 free
+    """
+
+    names: tuple[str, ...]
+    parents: Index
+    offsets: Array
+    axes: Array
+    slide: Mask
+    lower: Array
+    upper: Array
+    rest: Array
+    mobility: Array
+
+    @classmethod
+    def of(cls, joints: Iterable[Joint]) -> "Tree":
+        """The tree of these rows; ValueError or LookupError names the row that is wrong."""
+        rows = list(joints)
+        if not rows:
+            raise ValueError("a tree needs at least one joint")
+        parents: list[int] = []
+        index: dict[str, int] = {}
+        for row in rows:
+            _check(row, index, [r.name for r in rows])
+            parents.append(GROUND if row.parent is None else index[row.parent])
+            index[row.name] = len(index)
+        axes = np.array([row.axis for row in rows], dtype=float)
+        return cls(
+            names=tuple(index),
+            parents=frozen(parents, np.intp),
+            offsets=frozen([row.offset for row in rows]),
+            axes=frozen(axes / np.linalg.norm(axes, axis=1, keepdims=True)),
+            slide=frozen([row.slide for row in rows], bool),
+            lower=frozen([row.lower for row in rows]),
+            upper=frozen([row.upper for row in rows]),
+            rest=frozen([_rest(row) for row in rows]),
+            mobility=frozen([row.mobility for row in rows]),
+        )
+
+    @cached_property
+    def plan(self) -> "Plan":
+        """What `forward` needs of the tree at every call and θ does not change."""
+        return Plan.of(self)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def index(self, name: str) -> int:
+        """The row of the joint called `name`; LookupError suggests what may have been meant."""
+        try:
+            return self.names.index(name)
+        except ValueError:
+            raise LookupError(unknown("joint", name, self.names)) from None
+
+    def above(self, joint: int) -> list[int]:
+        """The joint and all it hangs from, up to the ground."""
+        chain = []
+        while joint != GROUND:
+            chain.append(joint)
+            joint = int(self.parents[joint])
+        return chain
+
+
+@dataclass(frozen=True, eq=False)
+class Effectors:
+    """k points of the body that are to reach targets, each fixed to some joint.
+
+    names             k names
+    joints   (k,)     the joint that carries each of them
+    offsets  (k, 3)   where the point is in that joint's frame [m]
+    carried  (k, n)   True where joint j moves effector i
+    chains   (n,)     a number per joint; joints that share an effector, directly or through others,
+                      have the same one, and -1 stands where a joint moves no effector
+    """
+
+    names: tuple[str, ...]
+    joints: Index
+    offsets: Array
+    carried: Mask
+    chains: Index
+
+    @classmethod
+    def of(cls, tree: Tree, points: Mapping[str, tuple[str, Sequence[float]]]) -> "Effectors":
+        """The effectors {name: (joint, offset)} of `tree`; any number, on any joint."""
+        if not points:
+            raise ValueError("at least one effector is needed")
+        for name, (_, offset) in points.items():
+            _check_vector(f"the offset of effector {name!r}", offset)
+        joints = [tree.index(joint) for joint, _ in points.values()]
+        carried = np.zeros((len(points), len(tree)), dtype=bool)
+        for row, joint in zip(carried, joints, strict=True):
+            row[tree.above(joint)] = True
+        return cls(
+            names=tuple(points),
+            joints=frozen(joints, np.intp),
+            offsets=frozen([offset for _, offset in points.values()]),
+            carried=frozen(carried, bool),
+            chains=frozen(_chains(carried), np.intp),
+        )
+
+    @cached_property
+    def mask(self) -> Array:
+        """`carried` as numbers, (k, 1, n): 1 where joint j moves effector i, else 0."""
+        return frozen(self.carried[:, None, :])  # type: ignore[no-any-return]
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """The tree put in order of depth for `forward`.
+
+    order   (n,)         the joints, those that hang from the ground first
+    rank    (n,)         its inverse: the row of joint j
+    climbs               for 1, 2, 4, 8 …: the rows that have so many joints above them (they are
+                         the last ones), and the row that stands so many above each of them
+    motion  (n, 4, 16)   what 1, sin θ, 1 − cos θ and θ are multiplied by in the transform of each
+                         row in its parent's frame, a 4 × 4 matrix written as 16 numbers
+    """
+
+    order: Index
+    rank: Index
+    climbs: tuple[tuple[slice, Index], ...]
+    motion: Array
+
+    @classmethod
+    def of(cls, tree: Tree) -> "Plan":
+        """The plan of `tree`."""
+        chains = [tree.above(joint) for joint in range(len(tree))]
+        depth = np.array([len(chain) for chain in chains])
+        order = np.argsort(depth, kind="stable")
+        rank = np.argsort(order)
+        climbs = []
+        for height in (2**r for r in range(int(depth.max()).bit_length())):
+            rows = slice(int((depth <= height).sum()), None)
+            if above := [rank[chains[joint][height]] for joint in order[rows]]:
+                climbs.append((rows, frozen(above, int)))
+        return cls(frozen(order, int), frozen(rank, int), tuple(climbs), _motion(tree)[order])
+
+
+def _motion(tree: Tree) -> Array:
+    turn = np.where(tree.slide[:, None, None], 0.0, skew(tree.axes))
+    motion = np.zeros((len(tree), 4, 4, 4))
+    motion[:, 0] = np.eye(4)
+    motion[:, 0, :3, 3] = tree.offsets
+    motion[:, 1, :3, :3] = turn
+    motion[:, 2, :3, :3] = turn @ turn
+    motion[:, 3, :3, 3] = np.where(tree.slide[:, None], tree.axes, 0.0)
+    return motion.reshape(len(tree), 4, 16)
+
+
+def skew(v: Array) -> Array:
+    """[v]×, the matrix with [v]× w = v × w: (..., 3) to (..., 3, 3)."""
+    x, y, z = np.moveaxis(v, -1, 0)
+    o = np.zeros_like(x)
+    return np.stack([o, -z, y, z, o, -x, -y, x, o], axis=-1).reshape(*v.shape, 3)
+
+
+def _chains(carried: Mask) -> list[int]:
+    """Number the connected groups of joints; two joints are connected when one effector has both."""
+    chains = np.full(carried.shape[1], -1)
+    for i, row in enumerate(carried):
+        met = set(chains[row]) - {-1}
+        chains[row | np.isin(chains, list(met))] = i
+    return [int(c) for c in chains]
+
+
+def _rest(row: Joint) -> float:
+    return float(np.clip(0.0, row.lower, row.upper)) if row.rest is None else float(row.rest)
+
+
+def _check(row: Joint, above: Mapping[str, int], names: Sequence[str]) -> None:
+    if not isinstance(row.name, str) or not row.name:
+        raise ValueError(f"a joint needs a name, not {row.name!r}")
+    if row.name in above:
+        raise ValueError(f"there are two joints called {row.name!r}")
+    if row.parent is not None and row.parent not in above:
+        if row.parent in names:
+            raise ValueError(f"{row.name!r} hangs from {row.parent!r}, which is not above it")
+        raise ValueError(f"{row.name!r} hangs from {row.parent!r}, but there is "
+                         + unknown("joint", row.parent, names))  # fmt: skip
+    _check_vector(f"the offset of {row.name!r}", row.offset)
+    _check_vector(f"the axis of {row.name!r}", row.axis)
+    if not np.linalg.norm(np.asarray(row.axis, dtype=float)) > 0:
+        raise ValueError(f"the axis of {row.name!r} is zero; it needs a direction")
+    if not row.lower <= row.upper:
+        raise ValueError(f"{row.name!r} has lower limit {row.lower} above its upper {row.upper}")
+    if (math.isinf(row.lower) and row.lower > 0) or (math.isinf(row.upper) and row.upper < 0):
+        raise ValueError(f"{row.name!r} has no angle within [{row.lower}, {row.upper}]")
+    if not (math.isfinite(_rest(row)) and row.lower <= _rest(row) <= row.upper):
+        raise ValueError(
+            f"the rest {row.rest} of {row.name!r} lies outside [{row.lower}, {row.upper}]"
+        )
+    if not 0 <= row.mobility <= 1:
+        raise ValueError(f"the mobility of {row.name!r} is {row.mobility}; it goes from 0 to 1")
+
+
+def _check_vector(what: str, vector: Sequence[float]) -> None:
+    try:
+        array = np.asarray(vector, dtype=float)
+    except (TypeError, ValueError):
+        raise ValueError(f"{what} must be three numbers, not {vector!r}") from None
+    if array.shape != (3,) or not np.isfinite(array).all():
+        raise ValueError(f"{what} must be three finite numbers, not {vector!r}")

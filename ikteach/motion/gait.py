@@ -1,0 +1,145 @@
+"""Chapter 7. Gait as the thesis has it: four targets that swing as sinusoids of time.
+
+    z = amplitude · sin(speed · T),   x and y constant
+
+T advances by `step_frequency` · dt a tick, in leaps of `slowdown` ticks (Buss's demonstration, on
+which the thesis builds, calls a larger slowdown "larger, less frequent steps").
+
+The thesis does not print its constants. These are chosen so that its own statement holds on
+`human()` with its limits: walking, both feet can always reach and both hands never; running, none
+of the four can. `tests/motion/test_gait.py` proves it by bounded least squares.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import pi
+
+import numpy as np
+
+from ikteach.arrays import Array, ArrayLike
+from ikteach.body import Tree
+from ikteach.names import unknown
+
+# A wound of the right leg, as joint: mobility. The thesis (5.2.3) wounds by weights on joints.
+WOUND: Mapping[str, float] = {"hip.bend.r": 0.5, "knee.r": 0.1, "ankle.r": 0.1}
+
+
+@dataclass(frozen=True)
+class Gait:
+    """One motion with all its parameters; `dataclasses.replace` makes variants.
+
+    speed            ω in sin(ω T) [rad/s]
+    step_frequency   seconds of gait time T a second of clock time
+    slowdown         ticks that one leap of T waits for and makes up for; 1 is smooth
+    back_z_leg, front_z_leg   amplitudes of the feet, left (target 0) and right (target 1) [m]
+    back_y_leg, front_y_leg   their heights, under the pelvis [m]
+    hand_z           amplitude of the right hand (target 2); the left one swings against it [m]
+    back_y_hand, front_y_hand   heights of the right hand and of the left one [m]
+    x_leg, x_hand    how far to the side the targets are [m]
+    forward          move forward through the world instead of in place
+    wound            mobility by joint name; empty for a sound body
+    """
+
+    name: str
+    speed: float
+    back_z_leg: float
+    front_z_leg: float
+    back_y_leg: float
+    front_y_leg: float
+    hand_z: float
+    back_y_hand: float
+    front_y_hand: float
+    step_frequency: float = 1.0
+    slowdown: int = 1
+    x_leg: float = 0.35
+    x_hand: float = 0.8
+    forward: bool = False
+    wound: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        numbers = {k: v for k, v in vars(self).items() if isinstance(v, int | float)}
+        for name, value in numbers.items():
+            if not np.isfinite(value):
+                raise ValueError(f"{name} of {self.name!r} is {value}; it must be finite")
+        if self.slowdown < 1 or self.slowdown != int(self.slowdown):
+            raise ValueError(f"slowdown counts ticks, from 1 up; it is {self.slowdown}")
+        for joint, value in self.wound.items():
+            if not 0 <= value <= 1:
+                raise ValueError(f"the mobility of {joint!r} must be from 0 to 1, not {value}")
+
+    def __call__(self, T: ArrayLike) -> Array:
+        """The targets at gait times T (...) [s], (..., 4, 3) [m], seen from the pelvis.
+
+        Order: left foot, right foot, right hand, left hand. Source: thesis 5.1, 5.2.
+        """
+        T = np.asarray(T, dtype=float)
+        swing = np.sin(self.speed * T)
+        z = [self.back_z_leg, self.front_z_leg, -self.hand_z, self.hand_z]
+        targets = np.empty((*T.shape, 4, 3))
+        targets[..., 0] = [self.x_leg, -self.x_leg, -self.x_hand, self.x_hand]
+        targets[..., 1] = [self.back_y_leg, self.front_y_leg, self.back_y_hand, self.front_y_hand]
+        targets[..., 2] = swing[..., None] * z
+        return targets
+
+    def clock(self, frames: int, dt: float = 1 / 30) -> Array:
+        """The gait time T at the end of each tick, (frames,) [s]."""
+        leaps = np.arange(1, frames + 1) // self.slowdown
+        return self.step_frequency * dt * self.slowdown * leaps
+
+    @property
+    def period(self) -> float:
+        """Gait time of one cycle, two steps [s]; infinite if nothing swings."""
+        return 2 * pi / abs(self.speed) if self.speed else np.inf
+
+    @property
+    def pace(self) -> float:
+        """Speed forward at which a foot's backward swing is still on the ground on average [m/s].
+
+        A foot swings back over 2A in half a cycle. Sinusoidal feet slip all the same: they go by
+        the mean and never lift.
+        """
+        stride = abs(self.back_z_leg) + abs(self.front_z_leg)  # 2A when both feet swing alike
+        return stride * abs(self.speed) / pi
+
+    def advance(self, T: ArrayLike) -> Array:
+        """How far the pelvis has moved forward at gait times T (...), (..., 3) [m]."""
+        T = np.asarray(T, dtype=float)
+        moved = np.zeros((*T.shape, 3))
+        moved[..., 2] = self.pace * T if self.forward else 0.0
+        return moved
+
+    def mobility(self, tree: Tree) -> Array:
+        """The tree's mobility with the wound in it, (n,); LookupError for an unknown joint."""
+        s = tree.mobility.copy()
+        for joint, value in self.wound.items():
+            s[tree.index(joint)] = value
+        return s
+
+
+walking = Gait(
+    "walking", speed=5.6, back_z_leg=-0.25, front_z_leg=0.25, back_y_leg=-0.88, front_y_leg=-0.88,
+    hand_z=0.3, back_y_hand=-0.2, front_y_hand=-0.2,
+)  # fmt: skip
+running = Gait(
+    "running", speed=9.0, back_z_leg=-0.5, front_z_leg=0.5, back_y_leg=-1.1, front_y_leg=-1.1,
+    hand_z=1.0, back_y_hand=0.0, front_y_hand=0.0,
+)  # fmt: skip
+
+
+class Motions(dict[str, Gait]):
+    """Gaits by name; an unknown name is answered with what it may have meant."""
+
+    def __missing__(self, name: str) -> Gait:
+        raise LookupError(unknown("motion", name, self))
+
+
+MOTIONS = Motions(walking=walking, running=running)
+
+
+def displayed(theta: ArrayLike, *, times: ArrayLike = 1.0, plus: ArrayLike = 0.0) -> Array:
+    """The pose that the thesis draws for a wounded body: θ × weight + weight, joint by joint.
+
+    The solver never hears of it (thesis 5.1.1, 5.2.3), so that what is drawn misses targets that
+    what is logged has reached. `Gait.wound` says it to the solver instead.
+    """
+    return np.asarray(theta, dtype=float) * times + plus

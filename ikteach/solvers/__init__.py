@@ -1,0 +1,52 @@
+"""The methods: functions of the Jacobian J and the error e, and of nothing else.
+
+    solver(J (..., m, n), e (..., m), *, its own options) -> dtheta (..., n)
+
+Options are bound with `functools.partial`. Weights, limits, caps and clamps are not in here: they
+are the same for all methods and stand in `ikteach.motion.step`.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+from ikteach.arrays import Array
+from ikteach.names import unknown
+from ikteach.solvers.dls import dls, dls_following
+from ikteach.solvers.pseudoinverse import pseudoinverse
+from ikteach.solvers.sdls import sdls
+from ikteach.solvers.singularity import Ellipsoid, conditioning, ellipsoid, manipulability
+from ikteach.solvers.transpose import transpose
+
+Solver = Callable[..., Array]
+
+
+class Solvers(dict[str, Solver]):
+    """Solvers by name; an unknown name is answered with what it may have meant."""
+
+    def __missing__(self, name: str) -> Solver:
+        raise LookupError(unknown("method", name, self))
+
+
+SOLVERS = Solvers(transpose=transpose, pseudoinverse=pseudoinverse, dls=dls, sdls=sdls)
+
+
+def name_of(solver: Any) -> str:
+    """The name of a solver, also of one with its options bound."""
+    return str(getattr(getattr(solver, "func", solver), "__name__", "solver"))
+
+
+__all__ = [
+    "SOLVERS",
+    "Ellipsoid",
+    "Solver",
+    "Solvers",
+    "conditioning",
+    "dls",
+    "dls_following",
+    "ellipsoid",
+    "manipulability",
+    "name_of",
+    "pseudoinverse",
+    "sdls",
+    "transpose",
+]

@@ -1,0 +1,136 @@
+"""Runs as tables: the tidy log, one row per frame, method and effector, and what it comes to.
+
+Equal inputs give equal tables; wall time, which never is equal, stands apart in `timing`.
+"""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from ikteach.arrays import ArrayLike, Mask
+from ikteach.body import Effectors, Tree
+from ikteach.motion import Track, reachable, track
+from ikteach.solvers import SOLVERS, Solver
+
+MEASURES = ["mean", "median", "p95", "max", "jitter", "capped", "held", "smallest_sigma"]
+
+
+def log(run: Track, *, can_reach: Mask | None = None) -> pd.DataFrame:
+    """The tidy log of one run without batches: a row per frame and effector.
+
+    frame, time [s], method, effector
+    error           distance to target at the end of the frame [m]
+    reachable       whether any pose within the limits reaches it (`ikteach.motion.reachable`);
+                    pass `can_reach` (T, k) where it is known already
+    capped          share of the frame's steps that the cap shortened, 0..1
+    held            how many joints of the effector's chain a limit stopped
+    jitter          ‖Δ²θ‖ of the whole body [rad]
+    smallest_sigma  smallest singular value of J [m/rad]: 0 is singular
+    """
+    if run.theta.ndim != 2:
+        raise ValueError(f"a log is of one run, not of a batch of shape {run.theta.shape[1:-1]}")
+    if can_reach is None:
+        can_reach = reachable(run.tree, run.effectors, run.targets)
+    frames, k = run.error.shape
+
+    def per_frame(values: Any) -> Any:
+        return np.repeat(values, k)
+
+    return pd.DataFrame(
+        {
+            "frame": per_frame(np.arange(frames)),
+            "time": per_frame(run.times),
+            "method": pd.Categorical([run.method] * (frames * k)),
+            "effector": pd.Categorical(
+                list(run.effectors.names) * frames, categories=list(run.effectors.names)
+            ),
+            "error": run.error.ravel(),
+            "reachable": np.asarray(can_reach).ravel(),
+            "capped": per_frame(run.capped),
+            "held": (run.held[:, None, :] & run.effectors.carried).sum(axis=-1).ravel(),
+            "jitter": per_frame(run.jitter),
+            "smallest_sigma": per_frame(run.smallest_sigma),
+        }
+    )
+
+
+def runs(
+    tree: Tree,
+    effectors: Effectors,
+    targets: ArrayLike,
+    methods: Mapping[str, Solver] | Iterable[str] = SOLVERS,
+    *,
+    max_step: Mapping[str, float | None] | ArrayLike | None = None,
+    **options: Any,
+) -> dict[str, Track]:
+    """Every method on the same targets (T, k, 3) from the same start: {method: Track}.
+
+    methods   {name: solver}, or names of `SOLVERS`
+    max_step  one step cap for all [rad], or a cap for each method, such as `BUSS_CAPS`
+    options   go to `track` and `step`, the same for all
+    """
+    chosen = dict(methods) if isinstance(methods, Mapping) else {m: SOLVERS[m] for m in methods}
+
+    def cap(name: str) -> Any:
+        return max_step.get(name) if isinstance(max_step, Mapping) else max_step
+
+    return {
+        name: track(tree, effectors, targets, solver, max_step=cap(name), **options)
+        for name, solver in chosen.items()
+    }
+
+
+def compare(
+    tree: Tree,
+    effectors: Effectors,
+    targets: ArrayLike,
+    methods: Mapping[str, Solver] | Iterable[str] = SOLVERS,
+    **options: Any,
+) -> pd.DataFrame:
+    """The logs of every method on the same targets, one under the other. Arguments as in `runs`."""
+    return together(runs(tree, effectors, targets, methods, **options))
+
+
+def together(tracks: Mapping[str, Track]) -> pd.DataFrame:
+    """One log of several runs on the same targets; `method` is the name each has in `tracks`."""
+    if not tracks:
+        raise ValueError("there is no run to log")
+    first = next(iter(tracks.values()))
+    can_reach = reachable(first.tree, first.effectors, first.targets)
+    logs = [log(run, can_reach=can_reach).assign(method=name) for name, run in tracks.items()]
+    table = pd.concat(logs, ignore_index=True)
+    table["method"] = pd.Categorical(table["method"], categories=list(tracks))
+    return table
+
+
+def summary(table: pd.DataFrame, by: Iterable[str] = ("method", "effector")) -> pd.DataFrame:
+    """What a log comes to, a row for each value of `by`.
+
+    mean, median, p95, max  of the distance to target [m]
+    jitter                  mean ‖Δ²θ‖ [rad]
+    capped                  share of capped steps
+    held                    joints held at limits, on average
+    smallest_sigma          the smallest met [m/rad]
+    """
+    groups = table.groupby(list(by), observed=True)
+    error = groups["error"]
+    return pd.DataFrame(
+        {
+            "mean": error.mean(),
+            "median": error.median(),
+            "p95": error.quantile(0.95),
+            "max": error.max(),
+            "jitter": groups["jitter"].mean(),
+            "capped": groups["capped"].mean(),
+            "held": groups["held"].mean(),
+            "smallest_sigma": groups["smallest_sigma"].min(),
+        }
+    )
+
+
+def timing(tracks: Mapping[str, Track]) -> pd.Series:
+    """Wall time of one step of each run [s]; it belongs to this machine and this moment."""
+    seconds = {name: run.seconds for name, run in tracks.items()}
+    return pd.Series(seconds, name="seconds a step", dtype=float).rename_axis("method")
