@@ -1,0 +1,152 @@
+"""Open the course in JupyterLab: `python -m ikteach`."""
+
+import argparse
+import errno
+import importlib.util
+import os
+import signal
+import socket
+import subprocess
+import sys
+from pathlib import Path
+from urllib.parse import quote
+
+from ikteach.course.opening import Course, chapters, deliver, find_course, told
+
+PACKAGE = Path(__file__).resolve().parent
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Open the course, or list its chapters; the exit code says whether that went well."""
+    if hasattr(sys.stdout, "reconfigure"):  # a title may hold a σ that the console cannot show
+        sys.stdout.reconfigure(errors="replace")
+    options, extra = parse(sys.argv[1:] if argv is None else argv)
+    try:
+        return open_course(find_course(PACKAGE), options, extra)
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        return refuse(f"The course cannot be opened: {where}{error.strerror or error}.")
+
+
+def parse(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
+    """Our options, and those for JupyterLab: what follows `--`."""
+    split = argv.index("--") if "--" in argv else len(argv)
+    parser = argparse.ArgumentParser(
+        prog="python -m ikteach",
+        usage="%(prog)s [FOLDER] [--no-browser] [--port N] [--list] [-- JUPYTERLAB OPTIONS]",
+        description="Open the course on inverse kinematics in JupyterLab.",
+        allow_abbrev=False,
+    )
+    parser.add_argument(
+        "folder",
+        metavar="FOLDER",
+        nargs="?",
+        type=Path,
+        help="copy the notebooks there and open the copy; a file that you have changed is never "
+        "overwritten (default: ./ikteach-course, or in a clone its own notebooks, uncopied)",
+    )
+    parser.add_argument("--no-browser", action="store_true", help="print the address only")
+    parser.add_argument("--port", metavar="N", type=port_number, help="use exactly this port")
+    parser.add_argument("--list", action="store_true", help="print the chapters and end")
+    options = parser.parse_args(argv[:split])
+    return options, ["--no-browser"] * options.no_browser + argv[split + 1 :]
+
+
+def port_number(text: str) -> int:
+    """A port from the command line."""
+    if not (text.isdecimal() and 1 <= int(text) <= 65535):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a port; ports are 1 to 65535")
+    return int(text)
+
+
+def open_course(course: Course, options: argparse.Namespace, extra: list[str]) -> int:
+    """List the chapters or run JupyterLab on them; give the exit code."""
+    titles = chapters(course.notebooks)
+    if not titles:
+        return refuse(f"There are no notebooks in {course.notebooks}.")
+    if options.list:
+        width = max(map(len, titles))
+        print(*(f"{name:{width}}  {title}" for name, title in titles.items()), sep="\n")
+        return 0
+    if reason := hindrance(options.port):
+        return refuse(reason)
+    folder = prepare(course, options.folder)
+    first = next(iter(titles))
+    print(f"opening {folder / first} in JupyterLab; Ctrl-C here ends it", flush=True)
+    code = run(lab_command(folder, first, options.port, extra), lab_environment(course))
+    as_root = hasattr(os, "geteuid") and os.geteuid() == 0  # Windows has no user numbers
+    if code == 1 and as_root and "--allow-root" not in extra:
+        refuse("JupyterLab refuses to run as root, unless: python -m ikteach -- --allow-root")
+    return code
+
+
+def hindrance(port: int | None) -> str:
+    """Why JupyterLab cannot be started, in a sentence; empty if nothing is known to hinder it."""
+    if importlib.util.find_spec("jupyterlab") is None:
+        return "JupyterLab is not installed. Install it with: pip install 'ikteach[lab]'"
+    if port is None:
+        return ""
+    try:
+        socket.create_server(("127.0.0.1", port)).close()
+    except OSError as error:
+        taken = error.errno == errno.EADDRINUSE
+        reason = str(error.strerror).partition(" (")[0]  # without the address that was tried
+        problem = "is taken" if taken else f"cannot be used ({reason})"
+        other = "leave out --port to let JupyterLab find a free one, or name another."
+        return f"Port {port} {problem}; {other}"
+    return ""
+
+
+def prepare(course: Course, wanted: Path | None) -> Path:
+    """The folder to open: the clone's own notebooks, or a copy of the course, told in sentences."""
+    notebooks = course.notebooks.resolve()
+    default = notebooks if course.clone else Path("ikteach-course")
+    folder = Path(os.path.realpath(os.path.expanduser(wanted or default)))
+    if course.clone and folder == notebooks:
+        return folder
+    if folder.is_relative_to(notebooks):
+        raise OSError(errno.EINVAL, "A copy cannot go among the originals", str(folder))
+    print(*told(deliver(notebooks, folder), folder), sep="\n")
+    return folder
+
+
+def lab_command(folder: Path, first: str, port: int | None, extra: list[str]) -> list[str]:
+    """The command that starts JupyterLab in `folder` with the notebook `first` open."""
+    command = [sys.executable, "-m", "jupyterlab", f"--ServerApp.root_dir={folder}"]
+    command += [f"--LabApp.default_url=/lab/tree/{quote(first)}"]
+    # Ask nothing of the network: no news, no look for a newer JupyterLab.
+    command += ["--LabApp.news_url=None"]
+    command += ["--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate"]
+    if port is not None:
+        command += [f"--ServerApp.port={port}", "--ServerApp.port_retries=0"]
+    return command + extra
+
+
+def lab_environment(course: Course) -> dict[str, str]:
+    """The environment of JupyterLab; from a clone, its kernels find this very package."""
+    paths = [str(PACKAGE.parent)] if course.clone else []
+    paths += filter(None, [os.environ.get("PYTHONPATH")])
+    return os.environ | ({"PYTHONPATH": os.pathsep.join(paths)} if paths else {})
+
+
+def run(command: list[str], environment: dict[str, str]) -> int:
+    """Run JupyterLab until it ends, and give its exit code."""
+    # In a process group of its own it does not hear the terminal's Ctrl-C. It hears of it from us
+    # as a plain request to end, which it obeys at any moment, with no question and no traceback.
+    # Windows has no such groups: there Ctrl-C reaches JupyterLab too, and it ends by itself.
+    child = subprocess.Popen(command, env=environment, process_group=0)
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), lambda *_: child.terminate())
+    code = child.wait()
+    return code if code >= 0 else 128 - code  # ended by a signal: the shell's way to say so
+
+
+def refuse(sentence: str) -> int:
+    """Say on stderr what went wrong; give the exit code for it."""
+    print(sentence, file=sys.stderr)
+    return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,161 @@
+"""The course's notebooks: where they are, what they are called, and a copy for the student.
+
+One rule governs the copy: a file that the student has changed is never overwritten. The folder
+therefore keeps a manifest, which holds the SHA-256 of each file as it was last delivered.
+"""
+
+import errno
+import hashlib
+import json
+import os
+from pathlib import Path, PurePosixPath
+from typing import Literal, NamedTuple
+
+MANIFEST = ".ikteach.json"
+
+Outcome = Literal["copied", "restored", "updated", "current", "kept"]
+Manifest = dict[str, str]
+
+
+class Course(NamedTuple):
+    """The folder of notebooks, and whether it is a clone's, in which one may work directly."""
+
+    notebooks: Path
+    clone: bool
+
+
+class Delivery(NamedTuple):
+    """What became of one file; `beside` names the newer version put next to a kept one."""
+
+    name: str
+    outcome: Outcome
+    beside: str = ""
+
+
+def find_course(package: Path) -> Course:
+    """The course that belongs to this package folder: its clone's, or the one in its wheel."""
+    clone = package.parent
+    if (clone / "pyproject.toml").is_file() and (clone / "notebooks").is_dir():
+        return Course(clone / "notebooks", clone=True)
+    return Course(package / "notebooks", clone=False)
+
+
+def course_files(notebooks: Path) -> list[str]:
+    """Names of all files of the course, relative and with `/`; nothing hidden, no checkpoints."""
+    files = (path.relative_to(notebooks) for path in notebooks.rglob("*") if path.is_file())
+    hidden = (".", "__pycache__")
+    return sorted(
+        file.as_posix() for file in files if not any(p.startswith(hidden) for p in file.parts)
+    )
+
+
+def chapters(notebooks: Path) -> dict[str, str]:
+    """File name -> title of each chapter, in the course's order."""
+    names = [name for name in course_files(notebooks) if PurePosixPath(name).match("*.ipynb")]
+    return {name: title(notebooks / name) for name in names if "/" not in name}
+
+
+def title(notebook: Path) -> str:
+    """The first `# ` heading of the notebook's first markdown cell; empty where there is none."""
+    try:
+        cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
+        prose = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "markdown"]
+    except (ValueError, KeyError, TypeError):
+        return "(not a readable notebook)"
+    lines = prose[0].splitlines() if prose else []
+    return next((line[2:].strip() for line in lines if line.startswith("# ")), "")
+
+
+def decide(ours: str, theirs: str | None, delivered: str | None) -> Outcome:
+    """What to do with a file, from its hashes: ours now, the student's, ours of the last time.
+
+    None stands for no file, and for never delivered.
+    """
+    if theirs is None:
+        return "copied" if delivered is None else "restored"
+    if theirs == ours:
+        return "current"
+    return "updated" if theirs == delivered else "kept"
+
+
+def deliver(notebooks: Path, folder: Path) -> list[Delivery]:
+    """Copy the course into `folder`, as far as that loses nothing of the student's."""
+    if folder.exists() and not folder.is_dir():
+        raise NotADirectoryError(errno.ENOTDIR, "It is a file, not a folder", str(folder))
+    names = course_files(notebooks)
+    folder.mkdir(parents=True, exist_ok=True)
+    before = read_manifest(folder)
+    manifest = dict(before)
+    deliveries: list[Delivery] = []
+    for name in names:
+        deliveries += _deliver_file(folder, name, (notebooks / name).read_bytes(), manifest)
+    if manifest != before:
+        text = json.dumps(manifest, indent=1, sort_keys=True)
+        _write(folder / MANIFEST, text.encode())
+    return deliveries
+
+
+def told(deliveries: list[Delivery], folder: Path) -> list[str]:
+    """What was done, a sentence each: new files are counted, all others are named."""
+    new = [delivery.name for delivery in deliveries if delivery.outcome == "copied"]
+    count = sum(name.endswith(".ipynb") for name in new)
+    others = f", other files: {len(new) - count}" if len(new) > count else ""
+    sentences = [f"copied {count} notebook{'s' * (count != 1)} to {folder}{others}"] if new else []
+    for name, outcome, beside in deliveries:
+        newer = f"; the newer version is beside it: {beside}" if beside else ""
+        words = {"restored": "restored", "updated": "updated", "kept": "kept yours"}
+        if outcome in words:
+            sentences.append(f"{words[outcome]}: {name}{newer}")
+    return sentences or [f"nothing new for {folder}"]
+
+
+def _deliver_file(folder: Path, name: str, data: bytes, manifest: Manifest) -> list[Delivery]:
+    """Deliver one file; where the student's is kept, a version they do not have goes beside it."""
+    outcome = _put(folder, name, data, manifest)
+    if outcome != "kept" or manifest.get(name) == _digest(data):
+        return [Delivery(name, outcome)]
+    path = PurePosixPath(name)
+    beside = str(path.with_name(f"{path.stem}.new{path.suffix}"))
+    if _put(folder, beside, data, manifest) == "kept":
+        return [Delivery(name, "kept"), Delivery(beside, "kept")]
+    manifest[name] = _digest(data)
+    return [Delivery(name, "kept", beside)]
+
+
+def _put(folder: Path, name: str, data: bytes, manifest: Manifest) -> Outcome:
+    """Write one file unless that would lose a change; note in the manifest what is now there."""
+    path = folder / name
+    theirs = _digest(path.read_bytes()) if path.exists() else None
+    outcome = decide(_digest(data), theirs, manifest.get(name))
+    if outcome in ("copied", "restored", "updated"):
+        _write(path, data)
+    if outcome != "kept":
+        manifest[name] = _digest(data)
+    return outcome
+
+
+def read_manifest(folder: Path) -> Manifest:
+    """File name -> SHA-256 as last delivered; empty where it is missing or damaged."""
+    try:
+        manifest = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+        return {name: digest for name, digest in manifest.items() if isinstance(digest, str)}
+    except (FileNotFoundError, ValueError, AttributeError):
+        return {}  # then every file that differs counts as the student's, and is kept
+
+
+def _digest(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
+
+
+def _write(path: Path, data: bytes) -> None:
+    """Replace the file in one step: after a crash there is the old one or the new, never half."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    draft = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        draft.write_bytes(data)
+        os.replace(draft, path)
+    except OSError as error:
+        error.filename = str(path)  # the name by which the student knows the file
+        raise
+    finally:
+        draft.unlink(missing_ok=True)
