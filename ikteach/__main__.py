@@ -114,6 +114,7 @@ def lab_command(folder: Path, first: str, port: int | None, extra: list[str]) ->
     """The command that starts JupyterLab in `folder` with the notebook `first` open."""
     command = [sys.executable, "-m", "jupyterlab", f"--ServerApp.root_dir={folder}"]
     command += [f"--LabApp.default_url=/lab/tree/{quote(first)}"]
+    command += ["--ServerApp.jpserver_extensions={'ikteach.server': True}"]
     # Ask nothing of the network: no news, no look for a newer JupyterLab.
     command += ["--LabApp.news_url=None"]
     command += ["--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate"]

@@ -27,7 +27,7 @@ def planar_arm(links: int | Sequence[float] = 3) -> Figure:
     lengths = [1.0] * links if isinstance(links, int) else [float(length) for length in links]
     if not lengths or not all(length > 0 for length in lengths):
         raise ValueError(f"an arm needs links longer than 0, not {links!r}")
-    joints = []
+    joints: list[Joint] = []
     for i, offset in enumerate([0.0, *lengths[:-1]], start=1):
         parent = joints[-1].name if joints else None
         joints.append(Joint(f"joint{i}", parent, (offset, 0, 0), Z, lower=-pi, upper=pi))

@@ -1,7 +1,7 @@
 """Chapter 0. Forward kinematics: from the angles θ to where everything is.
 
 Each joint stands in its parent's frame at `offset`, turned by R(v, θ) about its axis v
-(Rodrigues: R = I + sin θ [v]× + (1 − cos θ) [v]×²), so that, from the ground up,
+(Rodrigues: R = vvᵀ + sin θ [v]× + cos θ (I − vvᵀ)), so that, from the ground up,
 
     R_j = R_parent R(v_j, θ_j)        p_j = p_parent + R_parent offset_j
 
@@ -43,26 +43,26 @@ def forward(tree: Tree, theta: ArrayLike) -> Frames:
         raise ValueError(f"{n} joints need theta of shape (..., {n}), not {theta.shape}")
     T = _in_parent(tree, theta)
     for rows, above in tree.plan.climbs:
-        T[..., rows, :, :] = T.take(above, axis=-3) @ T[..., rows, :, :]
+        low = T[..., rows, :, :]
+        low[..., :3, :] = T.take(above, axis=-3)[..., :3, :4] @ low
     T = T.take(tree.plan.rank, axis=-3)
-    R, p = T[..., :3, :3], T[..., :3, 3]
-    return Frames(p, np.matvec(R, tree.axes), R)
+    return Frames(T[..., :3, 3], T[..., :3, 4], T[..., :3, :3])
 
 
 def locate(frames: Frames, effectors: Effectors) -> Array:
     """Positions s_i = p_j + R_j offset_i of the effectors, (..., k, 3) [m]."""
-    p = frames.positions[..., effectors.joints, :]
-    R = frames.orientations[..., effectors.joints, :, :]
+    p = frames.positions.take(effectors.joints, axis=-2)
+    R = frames.orientations.take(effectors.joints, axis=-3)
     return p + np.matvec(R, effectors.offsets)
 
 
 def _in_parent(tree: Tree, theta: Array) -> Array:
-    """Each joint in its parent's frame, (..., n, 4, 4), in the order of the plan."""
-    theta = theta.take(tree.plan.order, axis=-1)
-    parts = np.empty((*theta.shape, 1, 4))
-    parts[..., 0, 0] = 1
-    parts[..., 0, 1] = np.sin(theta)
-    parts[..., 0, 2] = 1 - np.cos(theta)
-    parts[..., 0, 3] = theta
-    T: Array = (parts @ tree.plan.motion).reshape(*theta.shape, 4, 4)
+    """[R p v; 0 1 0] of each joint in its parent's frame, (..., n, 4, 5), in the plan's order."""
+    plan = tree.plan
+    theta = theta.take(plan.order, axis=-1)[..., None, None]
+    T = np.sin(theta) * plan.turn
+    T += np.cos(theta) * plan.across
+    T += plan.along
+    if plan.slides:
+        T += theta * plan.travel
     return T

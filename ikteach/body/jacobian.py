@@ -6,7 +6,7 @@ from ikteach.arrays import Array, ArrayLike
 from ikteach.body.forward import Frames, locate
 from ikteach.body.tree import Effectors, Tree
 
-YZX = [1, 2, 0]
+YZX = np.array([1, 2, 0])
 
 
 def jacobian(
@@ -21,7 +21,7 @@ def jacobian(
     s = locate(frames, effectors) if at is None else np.asarray(at, dtype=float)
     v, p = _as_columns(frames.axes), _as_columns(frames.positions)
     columns = cross(v, s[..., None] - p)  # (..., k, 3, n)
-    if tree.slide.any():
+    if tree.plan.slides:
         columns = np.where(tree.slide, v, columns)
     columns *= effectors.mask
     return columns.reshape(*columns.shape[:-3], 3 * len(effectors), len(tree))
@@ -29,11 +29,12 @@ def jacobian(
 
 def cross(a: Array, b: Array) -> Array:
     """a × b along the last axis but one: (a b′ − a′ b)′, where ′ puts y, z, x for x, y, z."""
-    difference = a * b.take(YZX, axis=-2)
+    difference = b.take(YZX, axis=-2)
+    difference *= a
     difference -= a.take(YZX, axis=-2) * b
     return difference.take(YZX, axis=-2)
 
 
 def _as_columns(vectors: Array) -> Array:
     """(..., n, 3) to (..., 1, 3, n), side by side in memory: a long last axis is the fast one."""
-    return np.ascontiguousarray(vectors.swapaxes(-1, -2))[..., None, :, :]
+    return vectors.mT.copy()[..., None, :, :]

@@ -8,6 +8,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from numbers import Real
 
 import numpy as np
 
@@ -71,6 +72,9 @@ class Tree:
         rows = list(joints)
         if not rows:
             raise ValueError("a tree needs at least one joint")
+        for row in rows:
+            if not isinstance(row, Joint):
+                raise TypeError(f"a tree is made of Joints, not of {row!r}")
         parents: list[int] = []
         index: dict[str, int] = {}
         for row in rows:
@@ -78,6 +82,7 @@ class Tree:
             parents.append(GROUND if row.parent is None else index[row.parent])
             index[row.name] = len(index)
         axes = np.array([row.axis for row in rows], dtype=float)
+        axes /= abs(axes).max(axis=1, keepdims=True)  # so that no square under- or overflows
         return cls(
             names=tuple(index),
             parents=frozen(parents, np.intp),
@@ -137,8 +142,10 @@ class Effectors:
         """The effectors {name: (joint, offset)} of `tree`; any number, on any joint."""
         if not points:
             raise ValueError("at least one effector is needed")
-        for name, (_, offset) in points.items():
-            _check_vector(f"the offset of effector {name!r}", offset)
+        for name, point in points.items():
+            if not isinstance(point, Sequence) or isinstance(point, str) or len(point) != 2:
+                raise ValueError(f"effector {name!r} needs (joint, offset), not {point!r}")
+            _check_vector(f"the offset of effector {name!r}", point[1])
         joints = [tree.index(joint) for joint, _ in points.values()]
         carried = np.zeros((len(points), len(tree)), dtype=bool)
         for row, joint in zip(carried, joints, strict=True):
@@ -154,7 +161,7 @@ class Effectors:
     @cached_property
     def mask(self) -> Array:
         """`carried` as numbers, (k, 1, n): 1 where joint j moves effector i, else 0."""
-        return frozen(self.carried[:, None, :])  # type: ignore[no-any-return]
+        return frozen(self.carried[:, None, :])
 
     def __len__(self) -> int:
         return len(self.names)
@@ -168,14 +175,19 @@ class Plan:
     rank    (n,)         its inverse: the row of joint j
     climbs               for 1, 2, 4, 8 …: the rows that have so many joints above them (they are
                          the last ones), and the row that stands so many above each of them
-    motion  (n, 4, 16)   what 1, sin θ, 1 − cos θ and θ are multiplied by in the transform of each
-                         row in its parent's frame, a 4 × 4 matrix written as 16 numbers
+    along, turn, across, travel  (n, 4, 5)  in the plan's order: what 1, sin θ, cos θ and θ are
+                         multiplied by in [R p v; 0 1 0], each joint in its parent's frame
+    slides               True if `travel` is not all zero
     """
 
     order: Index
     rank: Index
     climbs: tuple[tuple[slice, Index], ...]
-    motion: Array
+    along: Array
+    turn: Array
+    across: Array
+    travel: Array
+    slides: bool
 
     @classmethod
     def of(cls, tree: Tree) -> "Plan":
@@ -188,19 +200,32 @@ class Plan:
         for height in (2**r for r in range(int(depth.max()).bit_length())):
             rows = slice(int((depth <= height).sum()), None)
             if above := [rank[chains[joint][height]] for joint in order[rows]]:
-                climbs.append((rows, frozen(above, int)))
-        return cls(frozen(order, int), frozen(rank, int), tuple(climbs), _motion(tree)[order])
+                climbs.append((rows, frozen(above, np.intp)))
+        along, turn, across, travel = (frozen(term[order]) for term in _terms(tree))
+        return cls(
+            order=frozen(order, np.intp),
+            rank=frozen(rank, np.intp),
+            climbs=tuple(climbs),
+            along=along,
+            turn=turn,
+            across=across,
+            travel=travel,
+            slides=bool(tree.slide.any()),
+        )
 
 
-def _motion(tree: Tree) -> Array:
-    turn = np.where(tree.slide[:, None, None], 0.0, skew(tree.axes))
-    motion = np.zeros((len(tree), 4, 4, 4))
-    motion[:, 0] = np.eye(4)
-    motion[:, 0, :3, 3] = tree.offsets
-    motion[:, 1, :3, :3] = turn
-    motion[:, 2, :3, :3] = turn @ turn
-    motion[:, 3, :3, 3] = np.where(tree.slide[:, None], tree.axes, 0.0)
-    return motion.reshape(len(tree), 4, 16)
+def _terms(tree: Tree) -> Array:
+    """(4, n, 4, 5): what 1, sin θ, cos θ and θ are multiplied by in [R p v; 0 1 0]."""
+    v, slide = tree.axes, tree.slide[:, None, None]
+    vvT = v[:, :, None] * v[:, None, :]
+    terms = np.zeros((4, len(tree), 4, 5))
+    along, turn, across, travel = terms
+    along[:, :3, :3] = np.where(slide, np.eye(3), vvT)
+    along[:, :3, 3], along[:, 3, 3], along[:, :3, 4] = tree.offsets, 1, v
+    turn[:, :3, :3] = np.where(slide, 0, skew(v))
+    across[:, :3, :3] = np.where(slide, 0, np.eye(3) - vvT)
+    travel[:, :3, 3] = np.where(tree.slide[:, None], v, 0)
+    return terms
 
 
 def skew(v: Array) -> Array:
@@ -211,7 +236,7 @@ def skew(v: Array) -> Array:
 
 
 def _chains(carried: Mask) -> list[int]:
-    """Number the connected groups of joints; two joints are connected when one effector has both."""
+    """Number the connected groups of joints; one effector connects all joints that carry it."""
     chains = np.full(carried.shape[1], -1)
     for i, row in enumerate(carried):
         met = set(chains[row]) - {-1}
@@ -228,15 +253,19 @@ def _check(row: Joint, above: Mapping[str, int], names: Sequence[str]) -> None:
         raise ValueError(f"a joint needs a name, not {row.name!r}")
     if row.name in above:
         raise ValueError(f"there are two joints called {row.name!r}")
-    if row.parent is not None and row.parent not in above:
+    if row.parent is not None and row.parent not in list(above):
         if row.parent in names:
             raise ValueError(f"{row.name!r} hangs from {row.parent!r}, which is not above it")
         raise ValueError(f"{row.name!r} hangs from {row.parent!r}, but there is "
                          + unknown("joint", row.parent, names))  # fmt: skip
     _check_vector(f"the offset of {row.name!r}", row.offset)
     _check_vector(f"the axis of {row.name!r}", row.axis)
-    if not np.linalg.norm(np.asarray(row.axis, dtype=float)) > 0:
+    if not np.any(row.axis):
         raise ValueError(f"the axis of {row.name!r} is zero; it needs a direction")
+    for what in ("lower limit", "upper limit", "rest", "mobility"):
+        value = getattr(row, what.split()[0])
+        if not (isinstance(value, Real) or (what == "rest" and value is None)):
+            raise ValueError(f"the {what} of {row.name!r} must be a number, not {value!r}")
     if not row.lower <= row.upper:
         raise ValueError(f"{row.name!r} has lower limit {row.lower} above its upper {row.upper}")
     if (math.isinf(row.lower) and row.lower > 0) or (math.isinf(row.upper) and row.upper < 0):

@@ -12,7 +12,8 @@ of the four can. `tests/motion/test_gait.py` proves it by bounded least squares.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import pi
+from math import isfinite, pi
+from numbers import Real
 
 import numpy as np
 
@@ -57,10 +58,11 @@ class Gait:
     wound: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        numbers = {k: v for k, v in vars(self).items() if isinstance(v, int | float)}
-        for name, value in numbers.items():
-            if not np.isfinite(value):
-                raise ValueError(f"{name} of {self.name!r} is {value}; it must be finite")
+        for name, value in vars(self).items():
+            if name not in ("name", "wound") and not (isinstance(value, Real) and isfinite(value)):
+                raise ValueError(
+                    f"{name} of {self.name!r} is {value!r}; it must be a finite number"
+                )
         if self.slowdown < 1 or self.slowdown != int(self.slowdown):
             raise ValueError(f"slowdown counts ticks, from 1 up; it is {self.slowdown}")
         for joint, value in self.wound.items():
@@ -72,10 +74,13 @@ class Gait:
 
         Order: left foot, right foot, right hand, left hand. Source: thesis 5.1, 5.2.
         """
-        T = np.asarray(T, dtype=float)
-        swing = np.sin(self.speed * T)
+        return self.at(self.speed * np.asarray(T, dtype=float))
+
+    def at(self, phase: ArrayLike) -> Array:
+        """The targets where the argument of the sine is `phase` (...) [rad], (..., 4, 3) [m]."""
+        swing = np.sin(phase)
         z = [self.back_z_leg, self.front_z_leg, -self.hand_z, self.hand_z]
-        targets = np.empty((*T.shape, 4, 3))
+        targets = np.empty((*swing.shape, 4, 3))
         targets[..., 0] = [self.x_leg, -self.x_leg, -self.x_hand, self.x_hand]
         targets[..., 1] = [self.back_y_leg, self.front_y_leg, self.back_y_hand, self.front_y_hand]
         targets[..., 2] = swing[..., None] * z
@@ -83,7 +88,7 @@ class Gait:
 
     def clock(self, frames: int, dt: float = 1 / 30) -> Array:
         """The gait time T at the end of each tick, (frames,) [s]."""
-        leaps = np.arange(1, frames + 1) // self.slowdown
+        leaps = np.arange(1.0, frames + 1) // self.slowdown
         return self.step_frequency * dt * self.slowdown * leaps
 
     @property
@@ -142,4 +147,4 @@ def displayed(theta: ArrayLike, *, times: ArrayLike = 1.0, plus: ArrayLike = 0.0
     The solver never hears of it (thesis 5.1.1, 5.2.3), so that what is drawn misses targets that
     what is logged has reached. `Gait.wound` says it to the solver instead.
     """
-    return np.asarray(theta, dtype=float) * times + plus
+    return np.add(np.multiply(theta, times), plus)

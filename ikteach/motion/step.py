@@ -22,6 +22,8 @@ BUSS_CAPS: Mapping[str, float | None] = {
     "sdls": None,
 }
 
+TINY = 1e-150  # keeps 0 / 0 away where nothing moves
+
 Cap = Callable[[Array, ArrayLike, Index], Array]
 Again = Callable[[Mask], Array]
 LimitRule = Callable[[Tree, Array, Array, Again], tuple[Array, Mask]]
@@ -53,9 +55,8 @@ def whole(dtheta: Array, max_step: ArrayLike, chains: Index) -> Array:
 
     The direction stays, but one hand that cannot reach its target slows all four limbs.
     """
-    peak = abs(dtheta).max(axis=-1)
-    over = peak > max_step
-    return dtheta * np.where(over, max_step / np.where(over, peak, 1), 1)[..., None]
+    peak = np.maximum(abs(dtheta).max(axis=-1), TINY)
+    return dtheta * np.minimum(1, max_step / peak)[..., None]
 
 
 def per_chain(dtheta: Array, max_step: ArrayLike, chains: Index) -> Array:
@@ -86,11 +87,10 @@ def clip(tree: Tree, theta: Array, dtheta: Array, again: Again) -> tuple[Array, 
 def hold(tree: Tree, theta: Array, dtheta: Array, again: Again) -> tuple[Array, Mask]:
     """Hold the joints that stand at a limit and would cross it, and let the others step again."""
     to, stopped = clip(tree, theta, dtheta, again)
+    if not stopped.any():
+        return to, stopped
     held = np.zeros(to.shape, dtype=bool)
-    while stopped.any():
-        crossing = stopped & (to == theta) & ~held
-        if not crossing.any():
-            break
+    while (crossing := stopped & (to == theta) & ~held).any():
         held |= crossing
         to, stopped = clip(tree, theta, again(held), again)
     return to, held | stopped
@@ -125,47 +125,65 @@ def step(
     """
     theta, targets = checked(tree, theta, effectors, targets)
     function = solver_of(solver)
+    max_step, max_error = _bound("max_step", max_step), _bound("max_error", max_error)
+    if max_error is not None and max_error.shape[-1:] not in ((), (1,), (len(effectors),)):
+        shape = f"(..., {len(effectors)})"
+        raise ValueError(f"max_error needs one number, or {shape}, not {max_error.shape}")
+    for name, rule in (("limits", limits), ("cap", cap)):
+        if not callable(rule):
+            raise TypeError(f"{name} must be a function, not {rule!r}")
     free = tree.mobility if mobility is None else _checked_mobility(tree, mobility)
 
     frames = forward(tree, theta)
     s = locate(frames, effectors)
     J = jacobian(tree, frames, effectors, at=targets if at_targets else s)
-    e = targets - s
-    aim = e if max_error is None else clamp_error(e, max_error)
-    e, aim = (v.reshape(*v.shape[:-2], 3 * len(effectors)) for v in (e, aim))
+    e = _stacked(targets - s)
+    aim = e if max_error is None else _stacked(clamp_error(targets - s, max_error))
+
+    def ask(s: Array) -> Array:
+        """What the solver wants of joints with mobility s."""
+        dtheta: Array = s * function(J * s[..., None, :], aim)
+        if not np.isfinite(dtheta).all():
+            raise FloatingPointError(f"{name_of(solver)} gave a step that is not finite")
+        return dtheta
 
     def capped(dtheta: Array) -> Array:
         return dtheta if max_step is None else cap(dtheta, max_step, effectors.chains)
 
-    def again(held: Mask) -> Array:
-        s = free * ~held
-        return capped(s * function(J * s[..., None, :], aim))
-
-    wanted = free * function(J * free[..., None, :], aim)
-    if not np.isfinite(wanted).all():
-        raise FloatingPointError(f"{name_of(solver)} gave a step that is not finite")
+    wanted = ask(free)
     dtheta = capped(wanted)
-    to, held = limits(tree, theta, dtheta, again)
-    return Step(to, e, J, wanted, to - theta, (dtheta != wanted).any(axis=-1), held)
+    to, held = limits(tree, theta, dtheta, lambda held: capped(ask(free * ~held)))
+    shortened = np.zeros(to.shape[:-1], dtype=bool)
+    if max_step is not None:
+        shortened |= (dtheta != wanted).any(axis=-1)
+    return Step(to, e, J, wanted, to - theta, shortened, held)
+
+
+def _stacked(e: Array) -> Array:
+    """(..., k, 3) to (..., 3k)."""
+    return e.reshape(*e.shape[:-2], 3 * e.shape[-2])
 
 
 def clamp_error(e: Array, max_error: ArrayLike) -> Array:
     """Each error e_i (..., k, 3) shortened to length max_error, one number or (..., k) [m]."""
-    length = np.sqrt(np.vecdot(e, e))
-    over = length > max_error
-    return e * np.where(over, max_error / np.where(over, length, 1), 1)[..., None]
+    length = np.maximum(np.sqrt(np.vecdot(e, e)), TINY)
+    return e * np.minimum(1, max_error / length)[..., None]
 
 
 def solver_of(solver: Solver | str) -> Solver:
     """The solver itself, or the one that is called so; LookupError for an unknown name."""
-    return SOLVERS[solver] if isinstance(solver, str) else solver
+    if isinstance(solver, str):
+        return SOLVERS[solver]
+    if not callable(solver):
+        raise TypeError(f"a solver is a function of (J, e) or a name, not {solver!r}")
+    return solver
 
 
 def checked(
     tree: Tree, theta: ArrayLike, effectors: Effectors, targets: ArrayLike
 ) -> tuple[Array, Array]:
     """θ and targets as arrays, if their shapes fit and their numbers are finite."""
-    theta, targets = np.asarray(theta, dtype=float), np.asarray(targets, dtype=float)
+    theta, targets = numbers("theta", theta), numbers("targets", targets)
     n, k = len(tree), len(effectors)
     if theta.shape[-1:] != (n,):
         raise ValueError(f"{n} joints need theta of shape (..., {n}), not {theta.shape}")
@@ -179,12 +197,30 @@ def checked(
     return theta, targets
 
 
+def _bound(name: str, bound: ArrayLike | None) -> Array | None:
+    """A bound that is 0 or more, or none."""
+    if bound is None:
+        return None
+    array = numbers(name, bound)
+    if not (array >= 0).all():
+        raise ValueError(f"{name} must be 0 or more, not {bound}")
+    return array
+
+
+def numbers(name: str, values: ArrayLike) -> Array:
+    """The values as an array of numbers; ValueError with their name if they are none."""
+    try:
+        return np.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} must be made of numbers, not {values!r}") from None
+
+
 def _culprit(values: Array, names: tuple[str, ...]) -> str:
     return names[int(np.argwhere(~np.isfinite(values))[0][-1])]
 
 
 def _checked_mobility(tree: Tree, mobility: ArrayLike) -> Array:
-    s = np.asarray(mobility, dtype=float)
+    s = numbers("mobility", mobility)
     bad = ~((s >= 0) & (s <= 1)) if s.shape[-1:] == (len(tree),) else None
     if bad is None:
         raise ValueError(f"mobility needs one number a joint, ({len(tree)},), not {s.shape}")

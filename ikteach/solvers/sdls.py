@@ -9,20 +9,24 @@ from ikteach.arrays import Array, ArrayLike
 
 SMALLEST = 1e-10  # [m/rad]; directions with a σ not above it are left out, as in Buss's code
 
+TINY = 1e-200  # keeps 0 / 0 away where a step is zero
+
 Clamp = Callable[[Array, ArrayLike], Array]
 
 
 def hard(phi: Array, bound: ArrayLike) -> Array:
     """φ (..., n), shortened as a whole so that no entry exceeds bound (...). ClampMaxAbs."""
-    bound, peak = np.asarray(bound, dtype=float), abs(phi).max(axis=-1, initial=0)
-    over = peak > bound
-    return phi * np.where(over, bound / np.where(over, peak, 1), 1)[..., None]
+    return phi * np.minimum(1, np.divide(bound, _peak(phi)))[..., None]
 
 
 def soft(phi: Array, bound: ArrayLike) -> Array:
     """φ · γ / (γ + max|φ|), for bound γ (...): it nears the bound and does not meet it."""
-    bound, peak = np.asarray(bound, dtype=float), abs(phi).max(axis=-1, initial=0)
-    return phi * (bound / (bound + np.where(peak > 0, peak, 1)))[..., None]
+    return phi * np.divide(bound, np.add(bound, _peak(phi)))[..., None]
+
+
+def _peak(phi: Array) -> Array:
+    """max|φ_j|, and TINY where φ is zero."""
+    return np.maximum(abs(phi).max(axis=-1), TINY)
 
 
 def sdls(J: Array, e: Array, *, max_angle: float = pi / 4, clamp: Clamp = hard) -> Array:
@@ -39,9 +43,8 @@ def sdls(J: Array, e: Array, *, max_angle: float = pi / 4, clamp: Clamp = hard) 
     ValueError unless J has three rows an effector.
     Source: thesis 4.4.5; Buss & Kim 2005, J. Graphics Tools 10(3):37.
     """
-    m, n = J.shape[-2:]
-    if m % 3:
-        raise ValueError(f"sdls needs three rows an effector, not {m} rows")
+    if J.shape[-2] % 3:
+        raise ValueError(f"sdls needs three rows an effector, not {J.shape[-2]} rows")
     U, sigma, Vt = np.linalg.svd(J, full_matrices=False)
     kept = sigma > SMALLEST
     sigma = np.where(kept, sigma, 1)
@@ -52,11 +55,11 @@ def sdls(J: Array, e: Array, *, max_angle: float = pi / 4, clamp: Clamp = hard) 
     alpha = np.where(kept, np.vecmat(e, U), 0)
     phi = clamp((alpha / sigma)[..., None] * Vt, gamma)  # (..., r, n), one row a direction
     dtheta = phi.sum(axis=-2)
-    over = abs(dtheta).max(axis=-1, keepdims=True, initial=0) > max_angle
-    return np.where(over, clamp(dtheta, max_angle), dtheta)
+    over = abs(dtheta).max(axis=-1) > max_angle
+    return np.where(over[..., None], clamp(dtheta, max_angle), dtheta) if over.any() else dtheta
 
 
 def lengths(A: Array) -> Array:
     """The length of each 3-vector in the columns of A (..., 3k, r): (..., k, r)."""
-    blocks = A.reshape(*A.shape[:-2], -1, 3, A.shape[-1])
+    blocks = A.reshape(*A.shape[:-2], A.shape[-2] // 3, 3, A.shape[-1])
     return np.sqrt((blocks * blocks).sum(axis=-2))

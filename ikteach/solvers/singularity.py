@@ -32,8 +32,7 @@ def manipulability(J: Array) -> Array:
     It is 0 at a singular pose. Near 0 is no test for nearly singular: its size depends on the
     units and on the body; use `conditioning` or the smallest σ.
     """
-    lengths: Array = ellipsoid(J).lengths
-    return lengths.prod(axis=-1)  # type: ignore[no-any-return]
+    return ellipsoid(J).lengths.prod(axis=-1)
 
 
 def conditioning(J: Array) -> Array:

@@ -23,4 +23,4 @@ def transpose(J: Array, e: Array, *, gain: float = 1.0) -> Array:
     Jg = np.matvec(J, g)
     gg, JgJg = np.vecdot(g, g)[..., None], np.vecdot(Jg, Jg)[..., None]
     alpha = np.divide(gg, JgJg, out=np.zeros_like(gg), where=JgJg > TINY)
-    return gain * alpha * JTe  # type: ignore[no-any-return]
+    return gain * alpha * JTe

@@ -1,0 +1,25 @@
+"""Show the code that a chapter is about, in the chapter."""
+
+import html
+import inspect
+from collections.abc import Callable
+from typing import Any
+
+
+class Source:
+    """The source text of a function or class, for the output of a cell."""
+
+    def __init__(self, thing: Any) -> None:
+        self.name = f"{thing.__module__}.{thing.__qualname__}"
+        self.text = inspect.getsource(thing)
+
+    def __repr__(self) -> str:
+        return self.text
+
+    def _repr_markdown_(self) -> str:
+        return f"`{html.escape(self.name)}`\n\n```python\n{self.text}```"
+
+
+def source(thing: Callable[..., Any]) -> Source:
+    """The source of `thing`, as the package runs it; TypeError for what has none in Python."""
+    return Source(thing)

@@ -1,0 +1,6 @@
+"""What a person sees and touches. It holds no mathematics: it is told poses and draws them."""
+
+from ikteach.view.player import GaitPlayer
+from ikteach.view.scene import Scene
+
+__all__ = ["GaitPlayer", "Scene"]

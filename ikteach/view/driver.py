@@ -1,0 +1,71 @@
+"""The one channel from the kernel to the scene: one binary message a frame, none queued."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from time import monotonic
+from typing import Any
+
+import anywidget
+import numpy as np
+import traitlets
+from ipywidgets import Widget, widget_serialization
+
+from ikteach.arrays import Array
+
+AHEAD = 30  # frames that may be sent and not yet known to be drawn: a second's
+PATIENCE = 10.0  # [s] without a sign of life before a page counts as gone
+
+
+class Driver(anywidget.AnyWidget):
+    """Writes matrices into pythreejs objects (see driver.js) and hears what the page has drawn.
+
+    renderer, nodes   what it draws with and what it moves
+    description       what the picture shows, in words, for those who cannot see it
+    on_sign           is called with True when a page begins to look and with False when it has
+                      drawn, from whichever thread hears of it
+    """
+
+    _esm = Path(__file__).parent / "driver.js"
+    renderer = traitlets.Instance(Widget).tag(sync=True, **widget_serialization)
+    nodes = traitlets.List(traitlets.Instance(Widget)).tag(sync=True, **widget_serialization)
+    description = traitlets.Unicode().tag(sync=True)
+
+    def __init__(self, renderer: Widget, nodes: Sequence[Widget], **kwargs: Any) -> None:
+        super().__init__(renderer=renderer, nodes=list(nodes), **kwargs)
+        self.sent = self.drawn = -1
+        self.greeted = False
+        self.heard = monotonic()
+        self.on_sign: Callable[[bool], None] = lambda new: None
+        self.on_msg(self._hear)
+
+    def show(self, matrices: Array, change: int = 0) -> None:
+        """Send [R | p] (nodes, 3, 4) to the page. `change` comes back with the drawn frame."""
+        self.sent += 1
+        numbers = matrices.swapaxes(-1, -2).astype("<f4")
+        self.send({"frame": self.sent, "change": change}, buffers=[numbers.tobytes()])
+
+    @property
+    def ready(self) -> bool:
+        """Whether a page looks and can take a frame: few are under way to it."""
+        return self.greeted and self.sent - self.drawn < AHEAD
+
+    @property
+    def alone(self) -> bool:
+        """Whether nobody looks: no page yet, or frames are under way and no sign has come back."""
+        waiting = self.sent - self.drawn >= AHEAD
+        return not self.greeted or (waiting and monotonic() - self.heard > PATIENCE)
+
+    def _hear(self, _: Any, content: dict[str, Any], __: Any) -> None:
+        self.heard = monotonic()
+        new = "hello" in content
+        if new:
+            self.greeted = True
+            self.drawn = self.sent  # what was under way to a page that has gone is lost
+        else:
+            self.drawn = max(self.drawn, int(content["drawn"]))
+        self.on_sign(new)
+
+
+def rows(*matrices: Array) -> Array:
+    """Stack [R | p] (..., 3, 4) into one (nodes, 3, 4)."""
+    return np.concatenate([m.reshape(-1, 3, 4) for m in matrices])

@@ -1,0 +1,84 @@
+"""What a figure looks like: solid parts, each fixed to a joint. Sizes in metres, nothing solved."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from ikteach.body import Effectors, Tree
+
+Vector = Sequence[float]
+
+# Okabe & Ito's colours, which people with any colour vision can tell apart.
+BLUE, ORANGE, RED, GREEN = "#0072b2", "#e69f00", "#d55e00", "#009e73"
+PURPLE, SKY, GREY = "#cc79a7", "#56b4e9", "#808890"
+EFFECTOR_COLOURS = (BLUE, ORANGE, RED, GREEN, PURPLE, SKY)
+
+SKIN, SHIRT, TROUSERS, SHOES, HAIR = "#d9a57e", "#5f8fb4", "#4a5568", "#2d3340", "#4b3a2f"
+
+
+class Limb(NamedTuple):
+    """A rod with round ends from `start` to `end` in the frame of `joint` (None: the ground)."""
+
+    joint: str | None
+    start: Vector
+    end: Vector
+    thick: float
+    thin: float
+    colour: str
+
+
+class Ball(NamedTuple):
+    """An ellipsoid with these half axes, in the frame of `joint`."""
+
+    joint: str | None
+    centre: Vector
+    radii: Vector
+    colour: str
+
+
+Part = Limb | Ball
+
+
+def human_skin() -> list[Part]:
+    """Pelvis, trunk, head and limbs for `figures.human()`."""
+    parts: list[Part] = [
+        Ball(None, (0, 0.045, 0), (0.15, 0.11, 0.105), TROUSERS),
+        Limb("spine.bend", (0, -0.08, 0), (0, 0.1, 0), 0.105, 0.11, SHIRT),
+        Ball("spine.twist", (0, 0.2, 0), (0.17, 0.2, 0.115), SHIRT),
+        Limb("spine.twist", (-0.19, 0.355, 0), (0.19, 0.355, 0), 0.052, 0.052, SHIRT),
+        Limb("spine.twist", (0, 0.36, 0), (0, 0.47, 0.01), 0.05, 0.045, SKIN),
+        Ball("spine.twist", (0, 0.565, 0.015), (0.078, 0.115, 0.095), SKIN),
+        Ball("spine.twist", (0, 0.6, -0.012), (0.083, 0.09, 0.092), HAIR),
+        Ball("spine.twist", (0, 0.555, 0.112), (0.014, 0.02, 0.02), SKIN),
+    ]
+    for side in "lr":
+        parts += [
+            Limb(f"shoulder.turn.{side}", (0, 0, 0), (0, -0.3348, 0), 0.052, 0.042, SHIRT),
+            Limb(f"elbow.{side}", (0, 0, 0), (0, -0.27, 0), 0.04, 0.03, SKIN),
+            Ball(f"elbow.{side}", (0, -0.335, 0), (0.022, 0.075, 0.042), SKIN),
+            Limb(f"hip.turn.{side}", (0, 0, 0), (0, -0.441, 0), 0.083, 0.058, TROUSERS),
+            Limb(f"knee.{side}", (0, 0, 0), (0, -0.4428, 0), 0.056, 0.04, TROUSERS),
+            Limb(f"ankle.{side}", (0, -0.045, -0.05), (0, -0.05, 0.13), 0.035, 0.028, SHOES),
+            Ball(f"ankle.{side}", (0, -0.05, 0.15), (0.042, 0.026, 0.05), SHOES),
+        ]
+    return parts
+
+
+def stick_skin(tree: Tree, effectors: Effectors, thick: float = 0.03) -> list[Part]:
+    """Rods between joints, and from joints to effectors, for any tree."""
+    parts: list[Part] = []
+    for j, name in enumerate(tree.names):
+        parent = tree.names[tree.parents[j]] if tree.parents[j] >= 0 else None
+        parts.append(Ball(name, (0, 0, 0), (1.4 * thick,) * 3, GREY))
+        if tree.offsets[j].any():
+            parts.append(Limb(parent, (0, 0, 0), tree.offsets[j].tolist(), thick, thick, SHIRT))
+    for joint, offset in zip(effectors.joints, effectors.offsets, strict=True):
+        if offset.any():
+            parts.append(Limb(tree.names[joint], (0, 0, 0), offset.tolist(), thick, thick, SHIRT))
+    return parts
+
+
+def skin_of(tree: Tree, effectors: Effectors) -> list[Part]:
+    """The human's skin if it fits the tree, else rods."""
+    parts = human_skin()
+    fits = {part.joint for part in parts} - {None} <= set(tree.names)
+    return parts if fits else stick_skin(tree, effectors)

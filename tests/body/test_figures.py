@@ -1,0 +1,77 @@
+"""The figures of the course against the numbers they were made from."""
+
+import json
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from reference import DATA, model
+
+from ikteach import figures, forward, jacobian, locate
+
+HUMAN = json.loads((DATA / "human20.json").read_text())
+
+
+def test_the_human_is_the_table():
+    tree, effectors = figures.human()
+    rows = HUMAN["joints"]
+    places = {row["name"]: row["i"] for row in rows} | {"root(pelvis)": -1}
+    assert_array_equal(tree.parents, [places[row["parent"]] for row in rows])
+    assert_allclose(tree.offsets, [row["offset"] for row in rows], atol=1e-15)
+    assert_allclose(tree.axes, [row["axis"] for row in rows], atol=1e-15)
+    assert_allclose(np.degrees(tree.lower), [row["min_deg"] for row in rows])
+    assert_allclose(np.degrees(tree.upper), [row["max_deg"] for row in rows])
+    assert not tree.slide.any()
+    for ours, points in ((effectors, "effectors"), (figures.heels(tree), "heels")):
+        wanted = HUMAN[points].values()
+        assert_array_equal(ours.joints, [places[point["joint"]] for point in wanted])
+        assert_allclose(ours.offsets, [point["offset"] for point in wanted], atol=1e-15)
+
+
+def test_the_human_stands_upright_and_is_its_own_mirror_image():
+    tree, effectors = figures.human()
+    left_foot, right_foot, right_hand, left_hand = locate(forward(tree, tree.rest), effectors)
+    assert_allclose(left_foot, right_foot * [-1, 1, 1])
+    assert_allclose(left_hand, right_hand * [-1, 1, 1])
+    assert left_foot[0] > 0
+    assert left_foot[1] < -0.9
+    # The same angles left and right are a mirror image, too.
+    theta = tree.rest.copy()
+    theta[2:] = 2 * [0.1, 0.2, 0.3, 0.4] + 2 * [0.1, 0.2, 0.1, 0.5, 0]
+    left_foot, right_foot, right_hand, left_hand = locate(forward(tree, theta), effectors)
+    assert_allclose(left_foot, right_foot * [-1, 1, 1], atol=1e-15)
+    assert_allclose(left_hand, right_hand * [-1, 1, 1], atol=1e-15)
+
+
+def test_the_y_is_busss():
+    """To his floats: he writes 0.7 as a number of 32 bits."""
+    tree, effectors = figures.y_shape()
+    theirs, ends = model("yshape")
+    assert_array_equal(tree.parents, theirs.parents)
+    assert_allclose(tree.offsets, theirs.offsets, atol=1e-7)
+    assert_allclose(tree.axes, theirs.axes, atol=1e-15)
+    assert_array_equal(effectors.joints, ends.joints)
+    assert_allclose(effectors.offsets, ends.offsets, atol=1e-7)
+
+
+def test_the_double_y_has_25_joints_and_4_effectors():
+    tree, effectors = figures.double_y()
+    assert len(tree) == 25
+    assert len(effectors) == 4
+    assert jacobian(tree, forward(tree, tree.rest), effectors).shape == (12, 25)
+    s = dict(zip(effectors.names, locate(forward(tree, tree.rest), effectors), strict=True))
+    for height in ("low", "high"):
+        assert_allclose(s[f"left.{height}"], s[f"right.{height}"] * [-1, 1, 1], atol=1e-12)
+
+
+@pytest.mark.parametrize("links", [1, 3, [0.5, 2.0]])
+def test_an_arm_is_stretched_along_x(links):
+    tree, effectors = figures.planar_arm(links)
+    length = links if isinstance(links, int) else sum(links)
+    assert_allclose(locate(forward(tree, tree.rest), effectors), [[length, 0, 0]])
+
+
+@pytest.mark.parametrize("links", [0, -1, [], [1, 0], [1, -1], [float("nan")]])
+def test_an_arm_without_links(links):
+    with pytest.raises(ValueError, match="an arm needs links longer than 0"):
+        figures.planar_arm(links)

@@ -1,0 +1,184 @@
+"""A real JupyterLab and a real Chromium. What a test leaves to be looked at is in tests/shots."""
+
+import json
+import os
+import secrets
+import shutil
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Error, Page, sync_playwright
+
+ROOT = Path(__file__).parents[2]
+SHOTS = ROOT / "tests" / "shots"
+FLAGS = [
+    "--headless=new",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+    "--disable-quic",
+    "--disable-default-apps",
+    "--disable-extensions",
+]
+READY = 40_000  # [ms] how long a page may take on a slow machine before the test gives up
+
+
+class Lab:
+    """JupyterLab on a folder, with what a test wants to ask of it."""
+
+    def __init__(self, folder: Path) -> None:
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            self.port = free.getsockname()[1]
+        self.folder, self.token = folder, secrets.token_hex(8)
+        command = [sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root"]
+        command += [f"--ServerApp.port={self.port}", "--ServerApp.port_retries=0"]
+        command += [f"--ServerApp.root_dir={folder}", "--LabApp.expose_app_in_browser=True"]
+        command += ["--ServerApp.jpserver_extensions={'ikteach.server': True}"]
+        command += [f"--IdentityProvider.token={self.token}", "--LabApp.news_url=None"]
+        environment = os.environ | {
+            "OPENBLAS_NUM_THREADS": "1",
+            "JUPYTER_CONFIG_DIR": str(folder / ".config"),
+            "JUPYTERLAB_SETTINGS_DIR": str(folder / ".settings"),
+            "JUPYTERLAB_WORKSPACES_DIR": str(folder / ".workspaces"),
+        }
+        self.log = (folder / "lab.log").open("w")
+        self.server = subprocess.Popen(command, env=environment, stdout=self.log, stderr=self.log)
+
+    def wait(self) -> None:
+        end = time.monotonic() + READY / 1000
+        while time.monotonic() < end:
+            try:
+                self.ask("status")
+                return
+            except (urllib.error.URLError, ConnectionError):
+                time.sleep(0.2)
+        raise RuntimeError((self.folder / "lab.log").read_text()[-2000:])
+
+    def ask(self, path: str, method: str = "GET") -> Any:
+        url = f"http://127.0.0.1:{self.port}/api/{path}?token={self.token}"
+        with urllib.request.urlopen(urllib.request.Request(url, method=method)) as answer:
+            text = answer.read()
+        return json.loads(text) if text else None
+
+    def url(self, notebook: str) -> str:
+        return f"http://127.0.0.1:{self.port}/lab/tree/{notebook}?token={self.token}&reset"
+
+    def stop_kernels(self) -> None:
+        for session in self.ask("sessions"):
+            self.ask(f"sessions/{session['id']}", "DELETE")
+
+    def stop(self) -> None:
+        self.server.terminate()
+        self.server.wait(30)
+        self.log.close()
+
+
+class Notebook:
+    """One notebook open in one page."""
+
+    def __init__(self, page: Page, lab: Lab, name: str) -> None:
+        self.page, self.lab, self.name = page, lab, name
+        self.errors: list[str] = []
+        page.on("pageerror", lambda error: self.errors.append(str(error)))
+        page.on("console", self._heard)
+        page.goto(lab.url(name))
+        page.wait_for_selector(".jp-Notebook .jp-CodeCell", timeout=READY)
+        page.wait_for_function(
+            "window.jupyterapp.commands.hasCommand('notebook:run-all-cells')", timeout=READY
+        )
+        page.wait_for_function(
+            "window.jupyterapp.shell.currentWidget?.sessionContext?.session?.kernel", timeout=READY
+        )
+
+    def _heard(self, message: Any) -> None:
+        if message.type == "error":
+            self.errors.append(message.text)
+
+    def command(self, name: str) -> None:
+        self.page.evaluate("name => window.jupyterapp.commands.execute(name)", name)
+
+    def run_all(self) -> None:
+        self.command("notebook:run-all-cells")
+
+    def kernel(self, expression: str, code: str = "") -> Any:
+        """Run code in the notebook's kernel, then give the value of a Python expression."""
+        answer = self.page.evaluate(ASK, [code, f"__import__('json').dumps({expression})"])
+        assert answer["status"] == "ok", answer
+        return json.loads(eval(answer["data"]["text/plain"]))
+
+    def run_cell(self, cell: str) -> None:
+        """Run the cell whose source has this text in it."""
+        self.page.locator(".jp-CodeCell", has_text=cell).first.locator(".cm-content").click()
+        self.command("notebook:run-cell")
+
+    def shot(self, name: str, selector: str | None = None) -> bytes:
+        """A screenshot of the page, or of one element, kept in tests/shots to be looked at."""
+        SHOTS.mkdir(exist_ok=True)
+        target = self.page.locator(selector).first if selector else self.page
+        return target.screenshot(path=SHOTS / f"{name}.png", timeout=READY)
+
+
+ASK = """async ([code, expression]) => {
+  const kernel = window.jupyterapp.shell.currentWidget.sessionContext.session.kernel;
+  const future = kernel.requestExecute(
+    { code, store_history: false, user_expressions: { answer: expression } });
+  const reply = (await future.done).content;
+  return reply.status === "ok" ? reply.user_expressions.answer : reply;
+}"""
+
+
+def open_browser(play: Any) -> Browser:
+    """The system's Chromium where there is one, else the one that Playwright has installed."""
+    system = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
+    return play.chromium.launch(executable_path=system, args=FLAGS, headless=True)
+
+
+@pytest.fixture(scope="session")
+def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lab]:
+    folder = tmp_path_factory.mktemp("course")
+    shutil.copytree(ROOT / "notebooks", folder, dirs_exist_ok=True)
+    lab = Lab(folder)
+    lab.wait()
+    yield lab
+    lab.stop()
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as play:
+        try:
+            browser = open_browser(play)
+        except Error as error:
+            pytest.fail(f"no Chromium to test with; see CONTRIBUTING.md: {error}")
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="session")
+def open_notebook(lab: Lab, browser: Browser) -> Iterator[Any]:
+    """Open a notebook of the course in a page and a kernel of its own."""
+    pages: list[Page] = []
+
+    def open_one(name: str) -> Notebook:
+        lab.stop_kernels()
+        page = browser.new_page(viewport={"width": 1440, "height": 1100})
+        pages.append(page)
+        return Notebook(page, lab, name)
+
+    yield open_one
+    for page in pages:
+        page.close()
+    lab.stop_kernels()

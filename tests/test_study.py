@@ -1,0 +1,141 @@
+"""Runs as tables."""
+
+from functools import partial
+
+import numpy as np
+import pandas as pd
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from pandas.testing import assert_frame_equal
+
+from ikteach import SOLVERS, dls, figures, gait, study, track
+from ikteach.motion import BUSS_CAPS, clip
+
+TREE, EFFECTORS = figures.human()
+FRAMES, K = 20, 4
+WALK = gait.walking(gait.walking.clock(FRAMES))
+COLUMNS = [
+    "frame", "time", "method", "effector", "error", "reachable", "capped", "held", "jitter",
+    "smallest_sigma",
+]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def run():
+    return track(TREE, EFFECTORS, WALK, "dls", max_step=0.05)
+
+
+@pytest.fixture(scope="module")
+def table():
+    return study.compare(TREE, EFFECTORS, WALK)
+
+
+def test_a_row_is_a_frame_and_an_effector(run):
+    log = study.log(run)
+    assert list(log.columns) == COLUMNS
+    assert len(log) == FRAMES * K
+    assert_array_equal(log["frame"], np.repeat(np.arange(FRAMES), K))
+    assert_array_equal(log["time"], np.repeat(run.times, K))
+    assert_array_equal(log["effector"].iloc[:5], [*EFFECTORS.names, EFFECTORS.names[0]])
+    assert (log["method"] == "dls").all()
+    assert_array_equal(log["error"], run.error.ravel())
+    assert_array_equal(log["capped"], np.repeat(run.capped, K))
+    assert_array_equal(log["jitter"], np.repeat(run.jitter, K))
+    assert_array_equal(log["smallest_sigma"], np.repeat(run.smallest_sigma, K))
+    chains = [[run.held[t][EFFECTORS.carried[i]].sum() for i in range(K)] for t in range(FRAMES)]
+    assert_array_equal(log["held"], np.ravel(chains))
+    assert log["held"].max() > 0
+    assert_array_equal(log["reachable"], ~log["effector"].str.startswith("hand"))
+
+
+def test_reach_may_be_handed_in(run):
+    log = study.log(run, can_reach=np.zeros((FRAMES, K), dtype=bool))
+    assert not log["reachable"].any()
+
+
+def test_a_log_is_of_one_run():
+    batch = track(TREE, EFFECTORS, np.stack([WALK, WALK], axis=1), "dls")
+    with pytest.raises(ValueError, match=r"a log is of one run, not of a batch of shape \(2,\)"):
+        study.log(batch)
+    with pytest.raises(ValueError, match="there is no run"):
+        study.together({})
+
+
+def test_equal_inputs_give_equal_tables(table):
+    assert_frame_equal(table, study.compare(TREE, EFFECTORS, WALK))
+    assert_frame_equal(study.summary(table), study.summary(table.copy()))
+
+
+def test_methods_by_name_by_mapping_and_all(table):
+    assert list(table["method"].cat.categories) == list(SOLVERS)
+    assert len(table) == len(SOLVERS) * FRAMES * K
+    assert list(table.columns) == COLUMNS
+    some = study.compare(TREE, EFFECTORS, WALK, ["sdls", "dls"])
+    assert list(some["method"].cat.categories) == ["sdls", "dls"]
+    for name in ("sdls", "dls"):
+        ours, all_ = (t[t["method"] == name].drop(columns="method") for t in (some, table))
+        assert_frame_equal(ours.reset_index(drop=True), all_.reset_index(drop=True))
+    named = {"λ = 0.1": partial(dls, damping=0.1), "λ = 1": partial(dls, damping=1)}
+    mapped = study.compare(TREE, EFFECTORS, WALK, named)
+    assert list(mapped["method"].unique()) == list(named)
+    with pytest.raises(LookupError, match="no method 'dsl'"):
+        study.compare(TREE, EFFECTORS, WALK, ["dsl"])
+
+
+def test_a_cap_for_all_or_for_each():
+    runs = study.runs(TREE, EFFECTORS, WALK, max_step=BUSS_CAPS, limits=clip)
+    for name, run in runs.items():
+        alone = track(TREE, EFFECTORS, WALK, name, max_step=BUSS_CAPS[name], limits=clip)
+        assert_array_equal(run.theta, alone.theta)
+    assert runs["pseudoinverse"].capped.any()
+    assert not runs["sdls"].capped.any()
+    for name, run in study.runs(TREE, EFFECTORS, WALK, max_step=0.01).items():
+        moved = np.diff(run.theta, axis=0)
+        assert abs(moved).max() <= 0.01 + 1e-12, name
+
+
+def test_the_summary_is_what_numpy_says(table):
+    summary = study.summary(table)
+    assert list(summary.columns) == study.MEASURES
+    assert len(summary) == len(SOLVERS) * K
+    runs = study.runs(TREE, EFFECTORS, WALK)
+    for method, run in runs.items():
+        for i, effector in enumerate(EFFECTORS.names):
+            row, error = summary.loc[method, effector], run.error[:, i]
+            held = run.held[:, EFFECTORS.carried[i]].sum(axis=1).mean()
+            wanted = [
+                error.mean(), np.median(error), np.quantile(error, 0.95), error.max(),
+                run.jitter.mean(), run.capped.mean(), held, run.smallest_sigma.min(),
+            ]  # fmt: skip
+            assert_allclose(row, wanted)
+    by_method = study.summary(table, by=["method"])
+    assert_allclose(by_method["mean"], [run.error.mean() for run in runs.values()])
+
+
+def test_by_phase_is_a_mean_in_each_part_of_the_cycle(table):
+    period = gait.walking.period
+    parts = study.by_phase(table, period, parts=4)
+    part = (table["time"] % period / period * 4).astype(int)
+    wanted = table[(part == 0) & (table["method"] == "dls") & (table["effector"] == "foot.l")]
+    assert parts.index[0] == 1 / 8
+    assert_allclose(parts.loc[1 / 8, ("dls", "foot.l")], wanted["error"].mean())
+    assert parts.shape == (3, len(SOLVERS) * K)  # the run is shorter than a cycle
+
+
+def test_distances_at_a_glance():
+    runs = study.runs(TREE, EFFECTORS, WALK, ["dls", "sdls"])
+    table = study.distances(runs)
+    assert list(table.index) == ["dls", "sdls"]
+    run = runs["sdls"]
+    assert_allclose(table.loc["sdls", list(EFFECTORS.names)], 100 * run.error.mean(axis=0))
+    assert table.loc["sdls", "worst"] == 100 * run.error.max()
+    assert table.loc["sdls", "jitter"] == pytest.approx(np.degrees(run.jitter.mean()))
+    assert table.loc["sdls", "held"] == run.held.sum(axis=1).mean()
+
+
+def test_wall_time_stands_apart():
+    runs = study.runs(TREE, EFFECTORS, WALK, ["dls", "sdls"])
+    timing = study.timing(runs)
+    assert isinstance(timing, pd.Series)
+    assert timing.to_dict() == {name: run.seconds for name, run in runs.items()}
+    assert "seconds" not in study.together(runs).columns
