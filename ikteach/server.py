@@ -13,12 +13,13 @@ def _jupyter_server_extension_points() -> list[dict[str, str]]:
 
 
 def _load_jupyter_server_extension(server: Any) -> None:
-    from jupyter_server.services.kernels.websocket import KernelWebsocketHandler
+    from jupyter_server.services.kernels import websocket
 
-    opened = KernelWebsocketHandler.open
+    handler: Any = websocket.KernelWebsocketHandler
+    opened = handler.open
 
-    async def open(handler: Any, kernel_id: str) -> None:
-        handler.set_nodelay(True)
-        await opened(handler, kernel_id)
+    async def open_with_nodelay(self: Any, kernel_id: str) -> None:
+        self.set_nodelay(True)
+        await opened(self, kernel_id)
 
-    KernelWebsocketHandler.open = open
+    handler.open = open_with_nodelay

@@ -22,12 +22,14 @@ def dls(J: Array, e: Array, *, damping: ArrayLike = 0.1) -> Array:
     Returns (..., n) [rad]. λ = 0 is taken as the smallest that rounding lets us see.
     ValueError if λ is negative or not finite. Source: thesis 4.4.3; Buss 2004, eq. 11.
     """
-    plain = isinstance(damping, float)  # the common case: np.min of one number costs a product
-    least, most = (damping, damping) if plain else (np.min(damping), np.max(damping))
+    if isinstance(damping, float):  # the common case: np.min of one number costs a product
+        least = most = damping
+    else:
+        least, most = float(np.min(damping)), float(np.max(damping))
     if not (least >= 0 and most < HUGE):  # nor NaN
         raise ValueError(f"damping must be 0 or more, and finite, not {damping}")
     JJT = J @ J.mT
-    lambda2 = np.square(damping)[..., None, None]
+    lambda2 = np.square(np.asarray(damping, dtype=float))[..., None, None]
     if least < SMALL:
         trace = JJT.trace(axis1=-2, axis2=-1)
         lambda2 = np.maximum(lambda2, (ROUNDING * trace + TINY)[..., None, None])

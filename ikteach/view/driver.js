@@ -1,10 +1,12 @@
 // Writes poses into the three.js objects that pythreejs has made.
 //
 // One binary message is one frame: 12 float32 a node, the columns x, y, z and position of its
-// matrix. The browser says which frames it has drawn, so that the kernel never sends more than a
-// few ahead; what comes late is overwritten, not queued.
+// matrix. The browser says which frames it has drawn, so that the kernel never sends far ahead; of
+// what comes faster than it can be drawn, the newest few are kept and the rest dropped.
 
 const REPORT_EVERY = 15; // frames; each report makes the kernel busy and idle, and the page says so
+
+const WAITING = 2; // frames kept for the next redraws where the network brings several at once
 
 async function resolve(manager, references) {
   const models = await Promise.all(
@@ -31,30 +33,36 @@ async function render({ model, el }) {
     ...model.get("nodes"),
   ]);
   const scene = renderer.get("scene");
-  let received = -1; // number of the newest frame written into the scene
-  let change = 0; // what the kernel said of it: how many changes of the controls it knows
-  let drawn = -1; // number of the newest frame on the screen
+  const waiting = []; // frames that came while one was being drawn; the newest few are kept
+  let drawing = null; // the frame that is in the scene and not yet on the screen
   let reported = -1; // number of the newest frame that the kernel has been told of
   let shown = 0;
 
   function receive(content, buffers) {
     if (content.frame === undefined) return;
-    const view = buffers[0];
-    const numbers = new Float32Array(view.buffer, view.byteOffset, view.byteLength / 4);
+    waiting.push({ ...content, view: buffers[0] });
+    if (waiting.length > WAITING) waiting.shift();
+    if (!drawing) next();
+  }
+
+  function next() {
+    drawing = waiting.shift() ?? null;
+    if (!drawing) return;
+    const { buffer, byteOffset, byteLength } = drawing.view;
+    const numbers = new Float32Array(buffer, byteOffset, byteLength / 4);
     nodes.forEach((node, i) => place(node.obj, numbers, 12 * i));
-    received = content.frame;
-    change = content.change;
     renderer.trigger("rerender", renderer, {});
   }
 
-  function report() {
-    if (received === drawn) return;
-    drawn = received;
-    shown += 1;
-    Object.assign(status.dataset, { frame: drawn, change, shown });
-    if (drawn - reported < REPORT_EVERY) return;
-    reported = drawn;
-    model.send({ drawn });
+  function drawn() {
+    if (!drawing) return;
+    const { frame, change } = drawing;
+    Object.assign(status.dataset, { frame, change, shown: ++shown });
+    if (frame - reported >= REPORT_EVERY) {
+      reported = frame;
+      model.send({ drawn: frame });
+    }
+    next();
   }
 
   function describe() {
@@ -66,7 +74,7 @@ async function render({ model, el }) {
   const hello = () => !document.hidden && model.send({ hello: true });
   model.on("msg:custom", receive);
   model.on("change:description", describe);
-  scene.on("afterRender", report);
+  scene.on("afterRender", drawn);
   document.addEventListener("visibilitychange", hello);
   describe();
   hello();
@@ -74,7 +82,7 @@ async function render({ model, el }) {
   return () => {
     model.off("msg:custom", receive);
     model.off("change:description", describe);
-    scene.off("afterRender", report);
+    scene.off("afterRender", drawn);
     document.removeEventListener("visibilitychange", hello);
   };
 }

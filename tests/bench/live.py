@@ -61,7 +61,8 @@ def measure(notebook: Notebook, seconds: float) -> None:
     ahead = []
     while page.evaluate("performance.now() / 1000") - start[2] < seconds:
         page.wait_for_timeout(1000)
-        ahead.append(notebook.kernel("player.scene.driver.sent") - page.evaluate(look)[1])
+        drawn = page.evaluate(look)[1]
+        ahead.append(notebook.kernel("player.scene.driver.sent") - drawn)
     end = page.evaluate(look)
     time_run = end[2] - start[2]
     print(f"{(end[0] - start[0]) / time_run:.1f} poses shown a second, "
