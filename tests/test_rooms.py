@@ -16,6 +16,7 @@ TOOLS = {"arrays", "names"}  # what every room may use
 BELOW = {  # what each room may import of the package
     "arrays": set(),
     "names": set(),
+    "server": set(),
     "body": TOOLS,
     "solvers": TOOLS,
     "motion": TOOLS | {"body", "solvers"},
