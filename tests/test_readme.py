@@ -11,7 +11,9 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 def test_the_example_prints_the_table() -> None:
     (example,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
-    run = subprocess.run([sys.executable, "-c", example], capture_output=True, text=True, check=True)
+    run = subprocess.run(
+        [sys.executable, "-c", example], capture_output=True, text=True, check=True
+    )
     assert all(name in run.stdout for name in ("pseudoinverse", "foot.l", "hand.r"))
 
 

@@ -48,6 +48,7 @@ class Lab:
         command += [f"--ServerApp.root_dir={folder}", "--LabApp.expose_app_in_browser=True"]
         command += ["--ServerApp.jpserver_extensions={'ikteach.server': True}"]
         command += [f"--IdentityProvider.token={self.token}", "--LabApp.news_url=None"]
+        command += ["--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate"]
         environment = os.environ | {
             "OPENBLAS_NUM_THREADS": "1",
             "JUPYTER_CONFIG_DIR": str(folder / ".config"),

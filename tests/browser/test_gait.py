@@ -78,13 +78,14 @@ def test_it_moves_and_pause_stops_it(gait: Notebook) -> None:
     assert (abs(first - second).max(axis=-1) > 30).mean() > 0.005
     press(gait, "Pause")
     settle(gait, "player._task.done()", True)
-    time.sleep(0.5)
+    time.sleep(1.5)  # what is under way is drawn
     third = pixels(gait.shot("07_paused_1", CANVAS))
     time.sleep(0.5)
     assert (third == pixels(gait.shot("07_paused_2", CANVAS))).all()
+    before = gait.page.evaluate(SHOWN)
     press(gait, "Step")
-    frames(gait, 1)
-    time.sleep(0.3)
+    gait.page.wait_for_function(f"{SHOWN} > {before}", timeout=READY)
+    time.sleep(0.5)
     assert (third != pixels(gait.shot("07_stepped", CANVAS))).any()
 
 

@@ -1,11 +1,13 @@
-"""Buss's tracking runs, 4,400 steps each, through `track`: four experiments, twenty settings.
+"""Buss's tracking runs through `track`: four experiments, twenty settings.
 
-Runs with the same solver go side by side in one batch; of those with 20 steps a frame only the
-first half is run, whose mean the reference also gives. Each start is run twice, the second time
-moved by 1e-10: where the two means part by more than 1e-7 the run is chaotic, rounding decides it,
-and only its first steps can be compared.
+Runs with the same solver go side by side in one batch, over the first half of their 4,400 frames,
+whose mean the reference also gives; those with 20 steps a frame go to the checkpoint at 401, and
+their mean is not compared. IKTEACH_FULL=1 in the environment runs everything to its end. Each start
+is run twice, the second time moved by 1e-10: where the two means part by more than 1e-7 the run is
+chaotic, rounding decides it, and only its first steps can be compared.
 """
 
+import os
 from collections import defaultdict
 from functools import cache, partial
 from math import pi, radians
@@ -86,10 +88,12 @@ def clamp_rule(clamps):
 
 
 def span(run):
-    """The frames of a run that are compared: those to be left out, all, and their mean's name."""
-    if run["inner"] == 1:
+    """The frames of a run that are compared: those left out, all, and the name of their mean."""
+    if os.environ.get("IKTEACH_FULL"):
         return run["warm"], run["warm"] + run["steps"], "mean_dist"
-    return run["warm"], run["warm"] + 2000, "mean_dist_first2000"
+    if run["inner"] == 1:
+        return run["warm"], run["warm"] + 2000, "mean_dist_first2000"
+    return 0, 401, None
 
 
 @cache
@@ -137,7 +141,8 @@ def test_run(x, r):
     means = error[warm:].mean(axis=(0, 2))
     chaotic = abs(means[0] - means[1]) > PARTED
     assert np.isfinite(theta).all()
-    assert_allclose(means[0], run[mean], rtol=0, atol=5e-3 if chaotic else 1e-6)
+    if mean is not None:
+        assert_allclose(means[0], run[mean], rtol=0, atol=5e-3 if chaotic else 1e-6)
     tree, effectors = model("yshape")
     for checkpoint in run["checkpoints"]:
         frame = checkpoint["step"] - 1
