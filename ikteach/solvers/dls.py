@@ -7,7 +7,6 @@ import numpy as np
 from ikteach.arrays import Array, ArrayLike, frozen
 
 ROUNDING = 1e-13  # of the trace of JJᵀ: damping below it is lost in the rounding of JJᵀ
-SMALL = 1e-3  # [m/rad] damping above it is no matter of rounding
 HUGE = 1e150  # its square is still finite
 TINY = 1e-200  # keeps JJᵀ + λ²I invertible where J is all zero
 
@@ -23,16 +22,15 @@ def dls(J: Array, e: Array, *, damping: ArrayLike = 0.1) -> Array:
     ValueError if λ is negative or not finite. Source: thesis 4.4.3; Buss 2004, eq. 11.
     """
     if isinstance(damping, float):  # the common case: np.min of one number costs a product
-        least = most = damping
+        low = high = damping
     else:
-        least, most = float(np.min(damping)), float(np.max(damping))
-    if not (least >= 0 and most < HUGE):  # nor NaN
+        damping = np.asarray(damping, dtype=float)
+        low, high = damping.min(initial=0), damping.max(initial=0)
+    if not (low >= 0 and high < HUGE):  # nor NaN
         raise ValueError(f"damping must be 0 or more, and finite, not {damping}")
     JJT = J @ J.mT
-    lambda2 = np.square(np.asarray(damping, dtype=float))[..., None, None]
-    if least < SMALL:
-        trace = JJT.trace(axis1=-2, axis2=-1)
-        lambda2 = np.maximum(lambda2, (ROUNDING * trace + TINY)[..., None, None])
+    least = ROUNDING * JJT.trace(axis1=-2, axis2=-1) + TINY
+    lambda2 = np.maximum(np.square(damping), least)[..., None, None]
     y = np.linalg.solve(JJT + lambda2 * identity(J.shape[-2]), e[..., None])[..., 0]
     return np.vecmat(y, J)
 
