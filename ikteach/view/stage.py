@@ -36,12 +36,14 @@ class View(Protocol):
     """What can be asked of any renderer.
 
     widget   what to display
+    stage    which figures stand where
     layers   {name: whether it is drawn}, for the names in `LAYERS`
     dark     whether the background is dark; may be set at any time
     """
 
     widget: Any
     dark: bool
+    stage: "Stage"
 
     @property
     def layers(self) -> dict[str, bool]:
