@@ -139,6 +139,15 @@ class Stage:
         """Half the width that all figures need [m]."""
         return float(self.places[-1, 0]) + 1.2 * self.unit
 
+    @property
+    def words(self) -> str:
+        """What can be seen, in words."""
+        what = "human" if self.human else "planar figure" if self.planar else "figure"
+        named = [name for name in self.names if name]
+        who = f"{len(self)} {what}s" if len(self) > 1 else f"A {what}"
+        who += f" ({', '.join(named)})" if named else ""
+        return f"{who} with targets for {', '.join(self.effectors.names)}."
+
     def name_at(self, f: int) -> list[float]:
         """Where the name of figure f is, from its place: over its head, or in a list beside it."""
         x, y = (-0.75, 0.75 - 0.16 * f) if self.overlaid else (0.0, 0.9 if self.human else 1.3)
