@@ -49,11 +49,12 @@ def _limb(limb: Limb) -> tuple[Array, Array]:
     """Points and unit normals of a rod with round ends: half a ball, a cone, half a ball."""
     start, end = np.asarray(limb.start, dtype=float), np.asarray(limb.end, dtype=float)
     R = sticks(start, end)[:, :3]
-    length = np.linalg.norm(R[:, 1])
-    R = R / [1, length, 1]  # the stick is stretched; a surface is only turned
-    far = GLOBE[:, 1:2] > 0
-    along = np.where(far, limb.thin, limb.thick) * GLOBE + np.where(far, [0, length, 0], 0)
-    return start + along @ R.T, GLOBE @ R.T
+    length = np.linalg.norm(end - start)
+    R[:, 1] /= length  # the stick is stretched; a surface is only turned
+    far = GLOBE[:, 1] > 0
+    surface = GLOBE * np.where(far, limb.thin, limb.thick)[:, None]
+    surface[far, 1] += length
+    return start + surface @ R.T, GLOBE @ R.T
 
 
 def _globe() -> tuple[Array, Index]:
