@@ -89,7 +89,9 @@ def load(path: str | os.PathLike[str]) -> Log:
     except (TypeError, ValueError, LookupError, AttributeError) as error:
         raise ValueError(f"{file.name!r} is damaged: {error}") from None
     if not table.is_file():
-        raise FileNotFoundError(f"{file.name!r} has its numbers in {str(table)!r}, which is missing")
+        raise FileNotFoundError(
+            f"{file.name!r} has its numbers in {str(table)!r}, which is missing"
+        )
     return _log(*figure, methods, _columns(table, _header(*figure), rows), table.name, facts)
 
 
@@ -243,5 +245,3 @@ def _log(
         capped=np.array(columns["capped"], dtype=bool).reshape(T, m),
         held=all_of("held.", (n,)).astype(bool), **facts,
     )  # fmt: skip
-
-

@@ -163,7 +163,7 @@ class Log:
     @property
     def clock(self) -> Array:
         """Clock time of each tick since the beginning of the run [s], (T,)."""
-        return self.dt * self.tick
+        return np.asarray(self.dt * self.tick, dtype=float)
 
     def tracks(self) -> dict[str, Track]:
         """The run of each method; empty if there is no tick."""

@@ -65,7 +65,7 @@ class Session:
         self.options = options
         self.record: deque[Moment] = deque(maxlen=keep)
         self.events: deque[Event] = deque(maxlen=keep_events)
-        self.runs = self.events_dropped = 0
+        self.runs = self.events_dropped = self.ticks = self._waited = 0
         self._gait, self._by_hand = gait, False
         self._before: deque[_Settings] = deque(maxlen=100)
         self._moved = -ONE_MOVE  # when something was last changed, by the clock on the wall
@@ -129,9 +129,7 @@ class Session:
         if bool(by_hand) != self._by_hand:
             self._change("by hand", {"by_hand": bool(by_hand)}, _by_hand=bool(by_hand))
 
-    def aim(
-        self, which: int | str, position: ArrayLike, *, going_on: bool = False
-    ) -> None:
+    def aim(self, which: int | str, position: ArrayLike, *, going_on: bool = False) -> None:
         """Put the target of an effector, by its name or number, to a position (3,) [m].
 
         From then on the targets are set by hand. `going_on` says that it is still the same move of
