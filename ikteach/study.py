@@ -12,6 +12,7 @@ import pandas as pd
 from ikteach.arrays import ArrayLike, Mask
 from ikteach.body import Effectors, Tree
 from ikteach.motion import Track, reachable, track
+from ikteach.motion.log import Log
 from ikteach.solvers import SOLVERS, Solver
 
 MEASURES = ["mean", "median", "p95", "max", "jitter", "capped", "held", "smallest_sigma"]
@@ -163,3 +164,50 @@ def timing(tracks: Mapping[str, Track]) -> pd.Series:
     """Wall time of one step of each run [s]; it belongs to this machine and this moment."""
     seconds = {name: run.seconds for name, run in tracks.items()}
     return pd.Series(seconds, name="seconds a step", dtype=float).rename_axis("method")
+
+
+def ticks(run: Log) -> pd.DataFrame:
+    """What happened in a session, tidy: a row per tick, method and effector.
+
+    tick, clock [s], time [s]   ticks and clock time since the reset, and gait time
+    shown                       whether this method was on the screen
+    method, effector
+    target.x, target.y, target.z   [m]
+    error                       distance to target at the end of the tick [m]
+    capped                      whether the cap shortened the step
+    held                        how many joints of the effector's chain a limit stopped
+    """
+    T, m, k = run.error.shape
+    methods, names = list(run.methods), list(run.effectors.names)
+
+    def per_tick(values: Any) -> Any:
+        return np.repeat(values, m * k)
+
+    target = np.repeat(run.targets[:, None], m, axis=1).reshape(-1, 3)
+    return pd.DataFrame(
+        {
+            "tick": per_tick(run.tick),
+            "clock": per_tick(run.clock),
+            "time": per_tick(run.time),
+            "shown": np.repeat(run.shown[:, None] == np.arange(m), k),
+            "method": pd.Categorical(np.tile(np.repeat(methods, k), T), categories=methods),
+            "effector": pd.Categorical(names * (T * m), categories=names),
+            **{f"target.{axis}": target[:, i] for i, axis in enumerate("xyz")},
+            "error": run.error.ravel(),
+            "capped": np.repeat(run.capped, k),
+            "held": (run.held[:, :, None, :] & run.effectors.carried).sum(axis=-1).ravel(),
+        }
+    )
+
+
+def angles(run: Log) -> pd.DataFrame:
+    """The poses of a session [rad]: a row per tick and method, a column per joint."""
+    index = pd.MultiIndex.from_product([run.tick, run.methods], names=["tick", "method"])
+    theta = run.theta.reshape(-1, len(run.tree))
+    return pd.DataFrame(theta, index=index, columns=list(run.tree.names))
+
+
+def events(run: Log) -> pd.DataFrame:
+    """What was changed in a session: a row per event, in words."""
+    rows = [(e.run, e.tick, e.time, e.kind, str(e)) for e in run.events]
+    return pd.DataFrame(rows, columns=["run", "tick", "time", "kind", "words"])

@@ -1,35 +1,50 @@
 """What a live figure is at this moment: one clock, one set of targets, a pose for each method.
 
 State lives here and nowhere else. Panels change the session, the scene is told what it says, and
-neither is known to it.
+neither is known to it. What is changed is noted and can be taken back; what happens is recorded.
 """
 
+import inspect
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from functools import partial
+from time import monotonic
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ikteach.arrays import Array, Mask
+from ikteach.arrays import Array, ArrayLike, frozen
 from ikteach.body import forward, locate
 from ikteach.body.figures import Figure, human
 from ikteach.motion.gait import Gait, walking
-from ikteach.motion.step import step
+from ikteach.motion.log import Event, Log, Moment, Tick
+from ikteach.motion.mix import Mix
+from ikteach.motion.step import checked, numbers, solver_of, step
 from ikteach.motion.track import Track
 from ikteach.names import unknown
-from ikteach.solvers import SOLVERS, Solver
+from ikteach.solvers import SOLVERS, Solver, name_of
+
+ONE_MOVE = 0.7  # [s] a slider that is moved again so soon is still making the same change
+# What `adjust` may set: the options of `step`, but for the mobility, which is the gait's wound.
+OPTIONS = [
+    name
+    for name, parameter in inspect.signature(step).parameters.items()
+    if parameter.kind is parameter.KEYWORD_ONLY and name != "mobility"
+]
 
 
 class Session:
     """A figure that walks, by every method at once, on the same targets and the same clock.
 
     gait      what the targets do; change it with `change(...)` or put another in its place
-    methods   {name: solver}
+    methods   {name: solver}; put another solver to a name with `use`
     method    the one that is shown
+    by_hand   True where the targets stay where `aim` has put them, and the gait rests
     dt        clock time of one tick [s]
-    options   go to `step`, the same for all methods
+    options   go to `step`, the same for all methods; set them with `adjust`
     keep      how many ticks the record holds; `dropped` counts those it has let go
+    events    the last changes, notes and errors; `events_dropped` counts those it has let go
     """
 
     def __init__(
@@ -41,22 +56,37 @@ class Session:
         method: str = "dls",
         dt: float = 1 / 30,
         keep: int = 3000,
+        keep_events: int = 1000,
         **options: Any,
     ) -> None:
         self.tree, self.effectors = figure or human()
-        self.gait = gait
         self.methods = dict(methods)
         self.dt = dt
         self.options = options
-        self.record: deque[tuple[float, Array, dict[str, _Tick]]] = deque(maxlen=keep)
-        self.show(method)
-        self.reset()
+        self.record: deque[Moment] = deque(maxlen=keep)
+        self.events: deque[Event] = deque(maxlen=keep_events)
+        self.runs = self.events_dropped = self.ticks = self._waited = 0
+        self._gait, self._by_hand = gait, False
+        self._before: deque[_Settings] = deque(maxlen=100)
+        self._moved = -ONE_MOVE  # when something was last changed, by the clock on the wall
+        self.method = self._known(method)
+        self._begin()
 
-    def show(self, method: str) -> None:
-        """Show the pose of `method`; LookupError for a name that is not among the methods."""
-        if method not in self.methods:
-            raise LookupError(unknown("method", method, self.methods))
-        self.method = method
+    # What can be changed. Each change is an event, and `undo` takes it back.
+
+    @property
+    def gait(self) -> Gait:
+        """What the targets do."""
+        return self._gait
+
+    @gait.setter
+    def gait(self, gait: Gait) -> None:
+        new, old = vars(gait), vars(self._gait)
+        what = {name: value for name, value in new.items() if value != old[name]}
+        if "name" in what:
+            what = {"motion": gait.name}
+        if what:
+            self._change("gait", what, going_on=self._soon("gait", what), _gait=gait)
 
     def change(self, **parameters: Any) -> None:
         """Give the gait other parameters; TypeError or ValueError says which one cannot be."""
@@ -65,13 +95,85 @@ class Session:
             raise LookupError(unknown("gait parameter", unfit[0], vars(self.gait)))
         self.gait = replace(self.gait, **parameters)
 
+    def show(self, method: str) -> None:
+        """Show the pose of `method`; LookupError for a name that is not among the methods."""
+        if self._known(method) != self.method:
+            self._change("method", {"shown": method}, method=method)
+
+    def use(self, method: str, solver: Solver | str) -> None:
+        """Put another solver, or the same with other options bound, to the name of a method."""
+        new = self.methods | {self._known(method): solver_of(solver)}
+        self._try(method, new[method], self.options)
+        what = {"method": method, "solver": in_words(new[method])}
+        same = self._soon("solver", what) and self.events[-1].what["method"] == method
+        self._change("solver", what, going_on=same, methods=new)
+
+    def adjust(self, **options: Any) -> None:
+        """Set options of `step` for all methods; the errors are those of `step`."""
+        for name in options:
+            if name not in OPTIONS:
+                raise LookupError(unknown("option", name, OPTIONS))
+        new = self.options | options
+        self._try(self.method, self.methods[self.method], new)
+        self._change(
+            "options", in_words(options), going_on=self._soon("options", options), options=new
+        )
+
+    @property
+    def by_hand(self) -> bool:
+        """Whether the targets are set by hand and not by the gait."""
+        return self._by_hand
+
+    @by_hand.setter
+    def by_hand(self, by_hand: bool) -> None:
+        if bool(by_hand) != self._by_hand:
+            self._change("by hand", {"by_hand": bool(by_hand)}, _by_hand=bool(by_hand))
+
+    def aim(self, which: int | str, position: ArrayLike, *, going_on: bool = False) -> None:
+        """Put the target of an effector, by its name or number, to a position (3,) [m].
+
+        From then on the targets are set by hand. `going_on` says that it is still the same move of
+        the mouse, which is one event and is undone as one. LookupError, ValueError.
+        """
+        i = self._effector(which)
+        name, at = self.effectors.names[i], numbers("position", position)
+        if at.shape != (3,):
+            raise ValueError(f"a target is a point (3,), not {at.shape}")
+        targets = self.targets.copy()
+        targets[i] = at
+        checked(self.tree, self.tree.rest, self.effectors, targets)
+        what = {"effector": name, "position": at.tolist()}
+        last = self.events[-1] if self.events else None
+        same = going_on and last is not None and last.kind == "target"
+        same = same and last is not None and last.what["effector"] == name
+        self._change("target", what, going_on=same, _by_hand=True, targets=frozen(targets))
+
+    def undo(self) -> Event:
+        """Take the last change back, and say which it was; LookupError if there is none."""
+        if not self._before:
+            raise LookupError("there is nothing to undo")
+        then = self._before.pop()
+        for name, value in then.state.items():
+            setattr(self, name, value)
+        self._retarget()
+        self.note("undo", taken_back=str(then.event))
+        return then.event
+
+    def note(self, kind: str, **what: Any) -> None:
+        """Put an event into the log: a pause, a remark; nothing else happens."""
+        self.events_dropped += len(self.events) == self.events.maxlen
+        self.events.append(Event(self.runs, self.ticks, self.time, kind, what))
+
     def reset(self) -> None:
-        """Back to the rest pose and the beginning of time, with an empty record."""
-        self.time = self.phase = self.advance = 0.0
-        self.ticks = self._waited = self.dropped = 0
-        self.theta = dict.fromkeys(self.methods, self.tree.rest)
-        self.targets = self.gait.at(0.0)
-        self.record.clear()
+        """Back to the rest pose and the beginning of time, with an empty record.
+
+        Settings stay as they are, targets set by hand too. The events go on.
+        """
+        self.note("reset", ticks=self.ticks)
+        self.runs += 1
+        self._begin()
+
+    # Time passes.
 
     def tick(self) -> None:
         """Let one tick of the clock pass; every `gait.slowdown`-th, time leaps and poses follow."""
@@ -79,13 +181,24 @@ class Session:
         self._waited += 1
         if self._waited < self.gait.slowdown:
             return
-        elapsed = self.gait.step_frequency * self.dt * self._waited
+        self.time, self.phase, self.advance, self.targets = self.ahead()
         self._waited = 0
-        self.time += elapsed
-        self.phase += self.gait.speed * elapsed
-        self.advance += self.gait.pace * elapsed if self.gait.forward else 0.0
-        self.targets = self.gait.at(self.phase)
-        self._follow()
+        try:
+            self._follow()
+        except Exception as error:
+            words = str(error)
+            if not (self.events and self.events[-1].what == {"words": words}):
+                self.note("error", words=words)
+            raise
+
+    def ahead(self) -> tuple[float, float, float, Array]:
+        """Time, phase, advance and targets after the next leap."""
+        elapsed = self.gait.step_frequency * self.dt * max(self._waited, self.gait.slowdown)
+        if self.by_hand:
+            return self.time + elapsed, self.phase, self.advance, self.targets
+        phase = self.phase + self.gait.speed * elapsed
+        gone = self.gait.pace * elapsed if self.gait.forward else 0.0
+        return self.time + elapsed, phase, self.advance + gone, self.gait.at(phase)
 
     def _follow(self) -> None:
         free = self.gait.mobility(self.tree)
@@ -97,11 +210,18 @@ class Session:
             )  # fmt: skip
             s = locate(forward(self.tree, tick.theta), self.effectors)
             error = np.linalg.norm(self.targets - s, axis=-1)
-            done[name] = _Tick(tick.theta, error, bool(tick.capped), tick.held)
+            done[name] = Tick(tick.theta, error, bool(tick.capped), tick.held)
         for name, tick_done in done.items():  # only now: a solver that fails changes nothing
             self.theta[name] = tick_done.theta
         self.dropped += len(self.record) == self.record.maxlen
-        self.record.append((self.time, self.targets, done))
+        self.record.append(
+            Moment(
+                self.time, self.targets, done, self.ticks, self.phase, self.advance, self.floor,
+                self.method,
+            )
+        )  # fmt: skip
+
+    # What can be asked.
 
     @property
     def error(self) -> Array:
@@ -109,30 +229,121 @@ class Session:
         s = locate(forward(self.tree, self.theta[self.method]), self.effectors)
         return np.linalg.norm(self.targets - s, axis=-1)
 
+    @property
+    def floor(self) -> float:
+        """Height of the ground under the pelvis: that of the lower foot's target [m]."""
+        return min(self.gait.back_y_leg, self.gait.front_y_leg)
+
+    def log(self, last: int | None = None) -> Log:
+        """What happened, or its last ticks, as data that no longer changes."""
+        return Log.of(
+            self.tree, self.effectors, self.dt, list(self.methods), self._recent(last),
+            events=tuple(self.events), settings=self.settings(),
+            dropped={"ticks": self.dropped, "events": self.events_dropped},
+        )  # fmt: skip
+
     def tracks(self, last: int | None = None) -> dict[str, Track]:
         """The record, or its last ticks, as {method: Track}; empty before the first tick."""
-        rows = list(self.record)[-last:] if last else list(self.record)
-        if not rows:
-            return {}
-        times, targets = np.array([r[0] for r in rows]), np.array([r[1] for r in rows])
+        return Log.of(
+            self.tree, self.effectors, self.dt, list(self.methods), self._recent(last)
+        ).tracks()
 
-        def of(name: str, what: str) -> Array:
-            return np.array([getattr(row[2][name], what) for row in rows])
-
+    def settings(self) -> dict[str, Any]:
+        """How everything stands, in plain words and numbers."""
         return {
-            name: Track(
-                name, self.tree, self.effectors, times, targets, rows[0][2][name].theta,
-                of(name, "theta"), of(name, "error"), of(name, "capped").astype(float),
-                of(name, "held").astype(bool), seconds=float("nan"),
-            )
-            for name in self.methods
-        }  # fmt: skip
+            "shown": self.method,
+            "by_hand": self.by_hand,
+            "targets": self.targets.tolist(),
+            "dt": self.dt,
+            "gait": in_words(vars(self.gait)),
+            "methods": in_words(self.methods),
+            "options": in_words(self.options),
+        }
+
+    def _recent(self, last: int | None) -> list[Moment]:
+        return list(self.record)[-last:] if last else list(self.record)
+
+    # Behind the changes.
+
+    def _begin(self) -> None:
+        self.time = self.phase = self.advance = 0.0
+        self.ticks = self._waited = self.dropped = 0
+        self.theta = dict.fromkeys(self.methods, self.tree.rest)
+        if not self.by_hand:
+            self.targets = self.gait.at(0.0)
+        self.record.clear()
+
+    def _change(
+        self, kind: str, what: Mapping[str, Any], *, going_on: bool = False, **state: Any
+    ) -> None:
+        """Set this state, and note it: as a new event, or in place of the one that goes on."""
+        if going_on and self._before:
+            self.events.pop()
+            before = self._before.pop().state
+        else:
+            before = {name: getattr(self, name) for name in _STATE}
+        for name, value in state.items():
+            setattr(self, name, value)
+        self._retarget()
+        self.note(kind, **what)
+        self._before.append(_Settings(self.events[-1], before))
+        self._moved = monotonic()
+
+    def _retarget(self) -> None:
+        if not self.by_hand:
+            self.targets = self.gait.at(self.phase)
+
+    def _soon(self, kind: str, what: Mapping[str, Any]) -> bool:
+        """Whether a change of the same things has only just been made: a slider on its way."""
+        last = self.events[-1] if self.events else None
+        recent = monotonic() - self._moved < ONE_MOVE
+        return bool(recent and last and last.kind == kind and last.what.keys() == what.keys())
+
+    def _known(self, method: str) -> str:
+        if method not in self.methods:
+            raise LookupError(unknown("method", method, self.methods))
+        return method
+
+    def _effector(self, which: int | str) -> int:
+        names = self.effectors.names
+        if isinstance(which, str):
+            if which not in names:
+                raise LookupError(unknown("effector", which, names))
+            return names.index(which)
+        if not 0 <= which < len(names):
+            raise LookupError(f"effectors are numbered 0 to {len(names) - 1}, not {which}")
+        return int(which)
+
+    def _try(self, method: str, solver: Solver, options: Mapping[str, Any]) -> None:
+        """Take a step that changes nothing, so that what cannot be is refused at once."""
+        step(self.tree, self.theta[method], self.effectors, self.targets, solver, **options)
 
 
-class _Tick:
-    """What one method did in one tick."""
+_STATE = ("method", "methods", "options", "targets", "_gait", "_by_hand")
 
-    __slots__ = ("capped", "error", "held", "theta")
 
-    def __init__(self, theta: Array, error: Array, capped: bool, held: Mask) -> None:
-        self.theta, self.error, self.capped, self.held = theta, error, capped, held
+class _Settings(NamedTuple):
+    """How things stood before an event."""
+
+    event: Event
+    state: dict[str, Any]
+
+
+def in_words(value: Any) -> Any:
+    """Settings as what a file can hold: numbers, words, lists and dictionaries of them.
+
+    A function becomes its name, one with bound options {"function": name, option: value}.
+    """
+    if isinstance(value, Mix):
+        return {"function": "mix", **in_words(value.methods)}
+    if isinstance(value, Mapping):
+        return {str(name): in_words(one) for name, one in value.items()}
+    if isinstance(value, partial):
+        return {"function": name_of(value), **in_words(value.keywords)}
+    if callable(value):
+        return name_of(value)
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    if isinstance(value, list | tuple):
+        return [in_words(one) for one in value]
+    return value

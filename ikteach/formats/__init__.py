@@ -1,0 +1,1 @@
+"""Files: movies and recorded sessions. Thin layers on libraries, imported only when used."""

@@ -1,0 +1,187 @@
+"""What happened in a session, as data that no longer changes."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ikteach.arrays import Array, Mask
+from ikteach.body import Effectors, Tree
+from ikteach.motion.track import Track
+
+
+class Event(NamedTuple):
+    """Something that was changed or went wrong.
+
+    run   how many resets came before it
+    tick  after how many ticks of that run
+    time  gait time then [s]
+    kind  "method", "gait", "target", "by hand", "options", "undo", "reset", "pause", "error" …
+    what  its particulars, by name
+    """
+
+    run: int
+    tick: int
+    time: float
+    kind: str
+    what: Mapping[str, Any]
+
+    def __str__(self) -> str:
+        words = ", ".join(f"{name} {value}" for name, value in self.what.items())
+        return f"{self.kind}: {words}" if words else self.kind
+
+
+class Moment(NamedTuple):
+    """One tick in which poses followed.
+
+    time     gait time [s]
+    targets  (k, 3) [m]
+    done     {method: what it did}
+    tick     how many ticks of the clock had passed
+    phase    argument of the gait's sine [rad]
+    advance  how far the figure had gone [m]
+    floor    height of the ground under the pelvis [m]
+    shown    the method that was shown
+    """
+
+    time: float
+    targets: Array
+    done: Mapping[str, "Tick"]
+    tick: int
+    phase: float
+    advance: float
+    floor: float
+    shown: str
+
+
+class Tick(NamedTuple):
+    """What one method did in one tick.
+
+    theta (n,) [rad], error (k,) [m], whether the cap shortened the step, held (n,) by limits
+    """
+
+    theta: Array
+    error: Array
+    capped: bool
+    held: Mask
+
+
+@dataclass(frozen=True, eq=False)
+class Log:
+    """A finished run of T ticks, by several methods on the same targets.
+
+    tree, effectors  the figure
+    dt               clock time of one tick [s]
+    methods          their names
+    tick     (T,)       how many ticks of the clock had passed
+    time     (T,)       gait time [s]
+    phase    (T,)       argument of the gait's sine [rad]
+    advance  (T,)       how far the figure had gone [m]
+    floor    (T,)       height of the ground under the pelvis [m]
+    shown    (T,)       the method that was shown, as its place in `methods`
+    targets  (T, k, 3)  [m]
+    theta    (T, m, n)  the pose by each method [rad]
+    error    (T, m, k)  distance to target [m]
+    capped   (T, m)     whether the cap shortened the step
+    held     (T, m, n)  whether a limit stopped the joint
+    events           what was changed, in order
+    settings         how the session stood at the end: plain words and numbers, by name
+    dropped          how many ticks and events came before these and were not kept
+    """
+
+    tree: Tree
+    effectors: Effectors
+    dt: float
+    methods: tuple[str, ...]
+    tick: np.ndarray[Any, np.dtype[np.int64]]
+    time: Array
+    phase: Array
+    advance: Array
+    floor: Array
+    shown: np.ndarray[Any, np.dtype[np.int64]]
+    targets: Array
+    theta: Array
+    error: Array
+    capped: Mask
+    held: Mask
+    events: tuple[Event, ...] = ()
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    dropped: Mapping[str, int] = field(default_factory=lambda: {"ticks": 0, "events": 0})
+
+    @classmethod
+    def of(
+        cls, tree: Tree, effectors: Effectors, dt: float, methods: Sequence[str],
+        moments: Sequence[Moment], **others: Any,
+    ) -> "Log":  # fmt: skip
+        """The log of these moments; `others` are its events, settings and dropped."""
+        T, m, n, k = len(moments), len(methods), len(tree), len(effectors)
+        place = {name: i for i, name in enumerate(methods)}
+
+        def each(what: str, dtype: Any = float, shape: tuple[int, ...] = ()) -> Any:
+            values = [getattr(moment, what) for moment in moments]
+            return np.array(values, dtype=dtype).reshape(T, *shape)
+
+        def by_method(what: str, dtype: Any = float, shape: tuple[int, ...] = ()) -> Any:
+            values = [[getattr(row.done[name], what) for name in methods] for row in moments]
+            return np.array(values, dtype=dtype).reshape(T, m, *shape)
+
+        return cls(
+            tree, effectors, dt, tuple(methods),
+            tick=each("tick", np.int64), time=each("time"), phase=each("phase"),
+            advance=each("advance"), floor=each("floor"),
+            shown=np.array([place[row.shown] for row in moments], dtype=np.int64),
+            targets=each("targets", shape=(k, 3)), theta=by_method("theta", shape=(n,)),
+            error=by_method("error", shape=(k,)), capped=by_method("capped", bool),
+            held=by_method("held", bool, (n,)), **others,
+        )  # fmt: skip
+
+    @classmethod
+    def of_tracks(cls, tracks: Mapping[str, Track], *, dt: float = 1 / 30, floor: float) -> "Log":
+        """The log of runs on the same targets (`study.runs`), over a floor at that height [m]."""
+        if not tracks:
+            raise ValueError("a log needs at least one run")
+        runs = list(tracks.values())
+        T, flat = len(runs[0]), np.zeros(len(runs[0]))
+        if any(run.targets.shape != runs[0].targets.shape for run in runs):
+            raise ValueError("the runs of one log must follow the same targets")
+
+        def stacked(what: str) -> Any:
+            return np.stack([getattr(run, what) for run in runs], axis=1)
+
+        return cls(
+            runs[0].tree, runs[0].effectors, dt, tuple(tracks),
+            tick=np.arange(1, T + 1), time=runs[0].times, phase=flat, advance=flat,
+            floor=flat + floor, shown=np.zeros(T, dtype=np.int64), targets=runs[0].targets,
+            theta=stacked("theta"), error=stacked("error"), capped=stacked("capped") > 0,
+            held=stacked("held"),
+        )  # fmt: skip
+
+    def __len__(self) -> int:
+        return len(self.tick)
+
+    @property
+    def clock(self) -> Array:
+        """Clock time of each tick since the beginning of the run [s], (T,)."""
+        return np.asarray(self.dt * self.tick, dtype=float)
+
+    def tracks(self) -> dict[str, Track]:
+        """The run of each method; empty if there is no tick."""
+        if not len(self):
+            return {}
+        return {
+            name: Track(
+                name, self.tree, self.effectors, self.time, self.targets, self.theta[0, i],
+                self.theta[:, i], self.error[:, i], self.capped[:, i].astype(float),
+                self.held[:, i], seconds=float("nan"),
+            )
+            for i, name in enumerate(self.methods)
+        }  # fmt: skip
+
+    def lost(self) -> str:
+        """A sentence on what the log no longer holds; empty if it holds all."""
+        gone = {what: number for what, number in self.dropped.items() if number}
+        if not gone:
+            return ""
+        parts = [f"the {number} earliest {what}" for what, number in gone.items()]
+        return f"The log is bounded: {' and '.join(parts)} were dropped."

@@ -1,0 +1,56 @@
+"""A method for each effector: the feet by one, the hands by another."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ikteach.arrays import Array, frozen
+from ikteach.body import Effectors
+from ikteach.motion.step import solver_of
+from ikteach.names import unknown
+from ikteach.solvers import Solver, name_of
+
+
+@dataclass(frozen=True, eq=False)
+class Mix:
+    """A solver put together from others: every joint moves as its effector's method would have it.
+
+    Each distinct method m solves for the whole body, Δθᵐ = m(J, e). A joint that carries only one
+    effector takes its entry from that effector's method; a joint that carries several, such as the
+    spine, takes the mean over them: Δθ_j = Σ_m share_mj Δθᵐ_j. Of one method alone, a mix is that
+    method. What the methods promise of JΔθ together, a mix does not promise.
+
+    methods  {effector: solver or its name}, one for every effector
+    share    (methods, n)  of the effectors that joint j carries, the part that method m has
+    """
+
+    solvers: tuple[Solver, ...]
+    share: Array
+    methods: Mapping[str, Solver]
+    __name__ = "mix"
+
+    @classmethod
+    def of(cls, effectors: Effectors, methods: Mapping[str, Solver | str]) -> "Mix":
+        """The mix for these effectors; LookupError for an effector or method that is not there."""
+        for name in methods:
+            if name not in effectors.names:
+                raise LookupError(unknown("effector", name, effectors.names))
+        if missing := [name for name in effectors.names if name not in methods]:
+            raise ValueError(f"a mix needs a method for every effector; {missing[0]!r} has none")
+        chosen = [solver_of(methods[name]) for name in effectors.names]
+        distinct = list(dict.fromkeys(chosen))
+        has = np.array([[one is other for other in chosen] for one in distinct], dtype=float)
+        carried = effectors.carried.astype(float)
+        share = has @ carried / np.maximum(carried.sum(axis=0), 1)
+        names = dict(zip(effectors.names, chosen, strict=True))
+        return cls(tuple(distinct), frozen(share), names)
+
+    def __call__(self, J: Array, e: Array) -> Array:
+        """Δθ (..., n) for J (..., 3k, n) and e (..., 3k)."""
+        steps = [part * solver(J, e) for solver, part in zip(self.solvers, self.share, strict=True)]
+        return np.sum(steps, axis=0)
+
+    def __repr__(self) -> str:
+        each = ", ".join(f"{name}: {name_of(solver)}" for name, solver in self.methods.items())
+        return f"Mix({each})"

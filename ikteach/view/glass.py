@@ -1,0 +1,137 @@
+"""One iteration under a glass: the clock stops, and the next tick is shown in pages."""
+
+import asyncio
+from collections.abc import Callable
+from typing import Any
+
+import ipywidgets as widgets
+
+from ikteach.motion.anatomy import Anatomy, anatomy
+from ikteach.motion.session import Session
+from ikteach.view.glass_pages import PAGES, Names, Page
+from ikteach.view.picture import Picture
+from ikteach.view.status import Status
+
+
+class Glass(widgets.VBox):  # type: ignore[misc]
+    """The next tick of a session, taken apart: e, J, U Σ Vᵀ, each method's share, Δθ, movement.
+
+    session  whose next tick is looked at; looking changes nothing in it
+    stop     is called before looking, to stop whatever lets time pass: `player.pause`
+    show     is called after "Do this tick", to draw the pose that came of it
+    """
+
+    def __init__(
+        self, session: Session, stop: Callable[[], None] = lambda: None,
+        show: Callable[[], None] = lambda: None,
+    ) -> None:  # fmt: skip
+        self.session, self._stop, self._show = session, stop, show
+        self.names = Names(session.effectors.names, session.tree.names)
+        self.tick: Anatomy | None = None
+        self.number = 0
+        try:
+            self._loop: asyncio.AbstractEventLoop | None = asyncio.get_running_loop()
+        except RuntimeError:
+            self._loop = None
+        self.look_button = widgets.Button(
+            description="Stop the clock and look", button_style="primary", layout={"width": "200px"}
+        )
+        self.do = widgets.Button(description="Do this tick", disabled=True)
+        self.back = widgets.Button(description="Back", disabled=True)
+        self.next = widgets.Button(description="Next", disabled=True)
+        self.method = widgets.Dropdown(
+            options=list(session.methods), value=session.method, description="Method"
+        )
+        self.status, self.picture, self.table = Status(), Picture(), widgets.HTML()
+        for button, action in (
+            (self.look_button, self.look), (self.do, self.advance),
+            (self.back, lambda: self.turn(-1)), (self.next, lambda: self.turn(1)),
+        ):  # fmt: skip
+            button.on_click(lambda _, action=action: self._call(action))
+        self.method.observe(lambda _: self._call(self._again), "value")
+        super().__init__(
+            [
+                widgets.HBox([self.look_button, self.method, self.do]),
+                widgets.HBox([self.back, self.next]),
+                self.status,
+                self.picture,
+                self.table,
+            ]
+        )
+        self.status.say("Nothing is under the glass yet.")
+
+    def look(self) -> None:
+        """Stop the clock, and take the tick that would come next apart."""
+        self._stop()
+        session, method = self.session, self.method.value
+        *_, targets = session.ahead()
+        self.tick = anatomy(
+            session.tree, session.theta[method], session.effectors, targets,
+            session.methods[method], methods=session.methods,
+            mobility=session.gait.mobility(session.tree), **session.options,
+        )  # fmt: skip
+        self._turn_to(self.number)
+
+    def advance(self) -> None:
+        """Let the tick that was looked at happen, and look at the one after it."""
+        for _ in range(self.session.gait.slowdown):
+            self.session.tick()
+        self._show()
+        self.look()
+
+    def turn(self, pages: int) -> None:
+        """So many pages on, or back where negative."""
+        self._turn_to(self.number + pages)
+
+    @property
+    def page(self) -> Page:
+        """The page that is open; LookupError before the first look."""
+        if self.tick is None:
+            raise LookupError("nothing is under the glass yet: look first")
+        return PAGES[self.number](self.tick, self.names)
+
+    def close(self) -> None:
+        """Free the widgets."""
+        if getattr(self, "comm", None) is None:
+            return
+        for one in self.children:
+            for inner in getattr(one, "children", ()):
+                inner.close()
+            one.close()
+        super().close()
+
+    def _again(self) -> None:
+        if self.tick is not None:
+            self.look()
+
+    def _turn_to(self, number: int) -> None:
+        self.number = min(max(number, 0), len(PAGES) - 1)
+        page, last = self.page, len(PAGES) - 1
+        self.back.disabled, self.next.disabled = self.number == 0, self.number == last
+        self.do.disabled = False
+        with self.picture.hold_sync():
+            self.picture.png, self.picture.alt = page.png, page.alt
+        self.table.value = (
+            "<details><summary>The numbers as a table</summary>"
+            '<div style="overflow:auto;max-height:300px">'
+            + page.table.to_html(float_format="{:.4g}".format, border=0, classes="ikteach-table")
+            + "</div></details>"
+        )
+        self.status.say(
+            f"Page {self.number + 1} of {len(PAGES)}: {page.title}. Tick "
+            f"{self.session.ticks + 1} by {self.method.value}. {page.text}"
+        )
+
+    # Callbacks may come on another thread: the loop acts.
+
+    def _call(self, action: Callable[[], Any]) -> None:
+        def act() -> None:
+            try:
+                action()
+            except Exception as error:  # told to the person, and the session goes on
+                self.status.fail(f"That did not work: {error}")
+
+        if self._loop is None or self._loop.is_closed():
+            act()
+        else:
+            self._loop.call_soon_threadsafe(act)

@@ -1,0 +1,38 @@
+"""A plot and a table in which one thing is chosen, by pointing or with the keyboard."""
+
+from pathlib import Path
+from typing import Any
+
+import anywidget
+import traitlets
+
+
+class Curve(anywidget.AnyWidget):
+    """A picture of curves with a line at the chosen place; a click or the arrow keys move it.
+
+    png, alt  the picture, and what it shows in words
+    span      where its axis begins and ends across the picture, 0..1
+    places    where each thing lies on the axis, 0..1
+    labels    what each is called
+    chosen    the number of the chosen one
+    """
+
+    _esm = Path(__file__).parent / "curve.js"
+    png = traitlets.Bytes(b"").tag(sync=True)
+    alt = traitlets.Unicode("").tag(sync=True)
+    span = traitlets.List([0.0, 1.0]).tag(sync=True)
+    places: Any = traitlets.List().tag(sync=True)
+    labels: Any = traitlets.List().tag(sync=True)
+    chosen = traitlets.Int(0).tag(sync=True)
+
+
+class Rows(anywidget.AnyWidget):
+    """A table whose rows can be chosen with a click or the arrow keys.
+
+    header, rows  words; chosen: the number of the chosen row
+    """
+
+    _esm = Path(__file__).parent / "rows.js"
+    header: Any = traitlets.List().tag(sync=True)
+    rows: Any = traitlets.List().tag(sync=True)
+    chosen = traitlets.Int(0).tag(sync=True)
