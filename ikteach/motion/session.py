@@ -229,6 +229,21 @@ class Session:
         s = locate(forward(self.tree, self.theta[self.method]), self.effectors)
         return np.linalg.norm(self.targets - s, axis=-1)
 
+    def jitter(self, last: int = 1) -> dict[str, Array]:
+        """‖Δ²θ‖ of each method in the last ticks of the record, {name: (≤ last,)} [rad a tick²].
+
+        0 in the first two ticks, which have no second difference.
+        """
+        rows = self._recent(last + 2)
+        begun = len(rows) < last + 2
+        jitter = {}
+        for name in self.methods:
+            theta = np.array([row.done[name].theta for row in rows]).reshape(len(rows), -1)
+            if begun:
+                theta = np.concatenate([theta[:1], theta[:1], theta])
+            jitter[name] = np.linalg.norm(np.diff(theta, n=2, axis=0), axis=-1)
+        return jitter
+
     @property
     def floor(self) -> float:
         """Height of the ground under the pelvis: that of the lower foot's target [m]."""

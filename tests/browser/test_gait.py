@@ -160,7 +160,7 @@ def test_sliders_by_keyboard_to_both_ends(
         frames(gait, 2)
     gait.kernel("None", f"{control}.value = {was}")
     settle(gait, value, was)
-    assert gait.kernel("player._alert.value") == ""
+    assert gait.kernel("player.status.wrong") == ""
 
 
 def test_reset(gait: Notebook) -> None:
@@ -181,17 +181,22 @@ def test_view(gait: Notebook) -> None:
     gait.page.get_by_label("View", exact=True).select_option("three-quarter")
 
 
-def test_plot_and_table_are_alive_and_have_words(gait: Notebook) -> None:
-    image = gait.page.locator(".jp-OutputArea img").first
-    source = image.get_attribute("src")
+def test_curves_and_table_are_alive_and_have_words(gait: Notebook) -> None:
+    strips = gait.page.locator(".ikteach-strips")
+    drawn = int(strips.get_attribute("data-drawn") or 0)
     gait.page.wait_for_function(
-        "was => document.querySelector('.jp-OutputArea img').src !== was", arg=source, timeout=READY
+        "was => +document.querySelector('.ikteach-strips').dataset.drawn > was + 5", arg=drawn
     )
-    assert "From its target" in (image.get_attribute("alt") or "")
+    gait.page.wait_for_function(
+        "document.querySelector('.ikteach-strips').ariaLabel.includes('transpose')", timeout=READY
+    )
     rows = gait.page.locator("table.ikteach-table").first.locator("tbody tr")
     assert rows.count() == 4
-    plot = pixels(gait.shot("07_plot", ".jp-OutputArea img"))
-    assert (plot.min(axis=-1) < 120).mean() > 0.01
+    plot = pixels(gait.shot("07_curves", ".ikteach-strips"))
+    blue, orange = (0, 114, 178), (230, 159, 0)
+    for colour in (blue, orange):
+        near = (abs(plot[..., :3].astype(int) - colour).max(axis=-1) < 60).mean()
+        assert near > 0.002, f"hardly any line of colour {colour}: {near}"
 
 
 def test_one_message_a_frame_and_no_queue(gait: Notebook) -> None:
@@ -217,7 +222,7 @@ player.scene.driver.send = counting()
 
 def test_an_error_is_told_once_and_the_session_goes_on(gait: Notebook) -> None:
     gait.kernel("None", "player.session.methods['dls'] = lambda J, e: J[0] * float('nan')")
-    alert = gait.page.locator(".widget-html [role=alert]")
+    alert = gait.page.locator(".ikteach-status [role=alert]:not(:empty)")
     alert.wait_for(timeout=READY)
     assert "not finite" in alert.inner_text()
     assert alert.count() == 1
@@ -230,7 +235,7 @@ def test_an_error_is_told_once_and_the_session_goes_on(gait: Notebook) -> None:
 
 def test_running_the_cell_again_leaves_one_loop(gait: Notebook) -> None:
     loops = (
-        "sum(task.get_coro().__qualname__.endswith('GaitPlayer._run') "
+        "sum(task.get_coro().__qualname__.endswith('Live._run') "
         "for task in __import__('asyncio').all_tasks(player._loop) if not task.done())"
     )
     old = gait.kernel("player.scene.driver.model_id")

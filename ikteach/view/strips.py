@@ -1,0 +1,96 @@
+"""Curves that run along with a session: distances and jitter of the last seconds.
+
+They are drawn in the page. The kernel sends numbers, a few hundred bytes ten times a second, so
+that the figure does not wait for a picture of a plot to be made.
+"""
+
+from pathlib import Path
+from typing import Any
+
+import anywidget
+import numpy as np
+import traitlets
+
+from ikteach.motion.session import Session
+from ikteach.view.skin import EFFECTOR_COLOURS
+
+EVERY = 3  # ticks from one message to the next: 10 a second at 30 ticks a second
+SECONDS = 10.0
+DASHES: tuple[list[int], ...] = ([], [7, 3], [2, 3], [9, 3, 2, 3], [5, 5], [1, 2])
+DISTANCE, JITTER = [1e-4, 3.0], [1e-3, 100.0]  # [m] and [degrees], the ranges of the axes
+
+
+class Strips(anywidget.AnyWidget):
+    """Three plots over the last seconds, on logarithmic axes.
+
+    The distance of each effector of the shown method to its target, the mean distance of each
+    method, and each method's jitter, ‖Δ²θ‖ a tick. Lines differ in dashes as well as in colour.
+    """
+
+    _esm = Path(__file__).parent / "strips.js"
+    panels: Any = traitlets.List().tag(sync=True)
+    seconds = traitlets.Float(SECONDS).tag(sync=True)
+    alt = traitlets.Unicode("No tick yet.").tag(sync=True)
+
+    def __init__(self, session: Session) -> None:
+        self._session, self._run, self._sent = session, session.runs, 0
+        self._methods = list(session.methods)
+        distance = {"range": DISTANCE, "unit": "m"}
+        super().__init__(
+            panels=[
+                {
+                    "title": "each effector, shown method",
+                    "lines": _lines(session.effectors.names),
+                    **distance,
+                },
+                {"title": "mean distance, each method", "lines": _lines(self._methods), **distance},
+                {
+                    "title": "jitter, each method",
+                    "lines": _lines(self._methods),
+                    "range": JITTER,
+                    "unit": "°",
+                },
+            ]
+        )
+
+    def send_new(self) -> None:
+        """Send the ticks that the page has not had."""
+        session = self._session
+        fresh = session.runs != self._run
+        new = session.ticks if fresh else session.ticks - self._sent
+        self._run, self._sent = session.runs, session.ticks
+        count = min(new, len(session.record))
+        rows = list(session.record)[-count:] if count > 0 else []
+        if not (rows or fresh):
+            return
+        jitter = session.jitter(len(rows))
+        samples = np.array(
+            [
+                [
+                    row.tick * session.dt,
+                    *row.done[row.shown].error,
+                    *(row.done[name].error.mean() for name in self._methods),
+                    *(np.degrees(jitter[name][i]) for name in self._methods),
+                ]
+                for i, row in enumerate(rows)
+            ],
+            dtype="<f4",
+        )
+        self.send({"fresh": fresh, "rows": len(rows)}, buffers=[samples.tobytes()])
+        if rows and session.ticks % (10 * EVERY) < EVERY:
+            self.alt = "Mean distance to target and jitter: " + "; ".join(
+                f"{name} {100 * rows[-1].done[name].error.mean():.1f} cm, "
+                f"{np.degrees(jitter[name][-1]):.2g}°"
+                for name in self._methods
+            )
+
+
+def _lines(names: Any) -> list[dict[str, Any]]:
+    return [
+        {
+            "name": name,
+            "colour": EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)],
+            "dashes": DASHES[i % len(DASHES)],
+        }
+        for i, name in enumerate(names)
+    ]
