@@ -23,9 +23,9 @@ SHOWN_AT = 0.5  # length on the screen of 1 m/rad [m]: columns of J, axes of the
 
 
 CAMERAS = {  # where from, seen from the pelvis of a human
-    "three-quarter": (1.5, 0.35, 2.1),
-    "front": (0.0, 0.0, 2.7),
-    "side": (2.7, 0.0, 0.01),
+    "three-quarter": (1.65, 0.3, 2.3),
+    "front": (0.0, 0.0, 2.9),
+    "side": (2.9, 0.0, 0.01),
     "top": (0.0, 2.9, 0.05),
 }
 PLANE = {"plane": (0.0, 0.0, 3.1)}  # along −z: how a planar figure is looked at

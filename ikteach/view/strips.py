@@ -4,6 +4,7 @@ They are drawn in the page. The kernel sends numbers, a few hundred bytes ten ti
 that the figure does not wait for a picture of a plot to be made.
 """
 
+from itertools import takewhile
 from pathlib import Path
 from typing import Any
 
@@ -57,10 +58,10 @@ class Strips(anywidget.AnyWidget):
         """Send the ticks that the page has not had."""
         session = self._session
         fresh = session.runs != self._run
-        new = session.ticks if fresh else session.ticks - self._sent
+        had = 0 if fresh else self._sent
+        new = takewhile(lambda row: row.tick > had, reversed(session.record))
+        rows = list(new)[::-1]
         self._run, self._sent = session.runs, session.ticks
-        count = min(new, len(session.record))
-        rows = list(session.record)[-count:] if count > 0 else []
         if not (rows or fresh):
             return
         jitter = session.jitter(len(rows))

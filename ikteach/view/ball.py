@@ -1,0 +1,19 @@
+"""A ball that is turned like a globe, and says how far."""
+
+from pathlib import Path
+
+import anywidget
+import traitlets
+
+
+class Ball(anywidget.AnyWidget):
+    """A rotation ball: dragging it, or the arrow keys on it, turn what it stands for.
+
+    azimuth    degrees to the left of the front, −180 to 180
+    elevation  degrees above the floor, −85 to 85
+    """
+
+    _esm = Path(__file__).parent / "ball.js"
+    azimuth = traitlets.Float(0.0).tag(sync=True)
+    elevation = traitlets.Float(0.0).tag(sync=True)
+    label = traitlets.Unicode("Rotation ball").tag(sync=True)
