@@ -45,7 +45,7 @@ class ErrorPlot:
                 _draw(line, tracks[shown].times, error)
         for line, run in zip(self._methods, tracks.values(), strict=False):
             _draw(line, run.times, run.error.mean(axis=-1))
-        return _png(np.asarray(self._canvas.buffer_rgba()))
+        return as_png(np.asarray(self._canvas.buffer_rgba()))
 
 
 def _lines(axes: Axes, names: list[str], title: str) -> list[Line2D]:
@@ -70,7 +70,8 @@ def _draw(line: Line2D, times: Array, error: Array) -> None:
     line.axes.draw_artist(line)  # type: ignore[union-attr]
 
 
-def _png(pixels: Array) -> bytes:
+def as_png(pixels: Array) -> bytes:
+    """RGBA pixels (h, w, 4) as a PNG of few colours."""
     from PIL import Image  # comes with matplotlib
 
     out = io.BytesIO()
