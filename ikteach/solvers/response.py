@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ikteach.arrays import Array
+from ikteach.arrays import Array, ArrayLike
 from ikteach.solvers.sdls import SMALLEST, lengths
 
 
@@ -42,6 +42,15 @@ def directions(J: Array, e: Array, *, max_angle: float = pi / 4) -> Directions:
     M = np.divide(moved, sigma, out=np.full_like(sigma, np.inf), where=sigma > SMALLEST)
     gamma = np.minimum(1, N / np.maximum(M, N)) * max_angle
     return Directions(sigma, np.vecmat(e, U), U, Vt, N, M, gamma)
+
+
+def filtered(sigma: Array, damping: ArrayLike = 0.0) -> Array:
+    """f_i = σ_i / (σ_i² + λ²) for σ (..., r), the factors of DLS [rad/m]; without damping 1 / σ_i.
+
+    The largest that any σ can make of it is 1 / 2λ. Zero where σ and λ are.
+    """
+    size = np.square(sigma) + np.square(damping)
+    return np.divide(sigma, size, out=np.zeros_like(size), where=size > 0)
 
 
 def factors(J: Array, e: Array, dtheta: Array, *, least: float = 1e-9) -> Array:

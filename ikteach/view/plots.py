@@ -115,7 +115,7 @@ def portrait(tree: Tree, effectors: Effectors, theta: Array, targets: Array) -> 
     s = locate(frames, effectors)
     views = [("from the front", 0, "x [m], left →"), ("from the left side", 2, "z [m], forward →")]
     for axes, (title, across, label) in zip(figure.subplots(1, 2), views, strict=True):
-        for start, end in _bones(tree, effectors, frames.positions, s):
+        for start, end in bones(tree, effectors, frames.positions, s):
             axes.plot([start[across], end[across]], [start[1], end[1]], "-", color="0.35", lw=3)
         for i, name in enumerate(effectors.names):
             colour = EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)]
@@ -128,7 +128,7 @@ def portrait(tree: Tree, effectors: Effectors, theta: Array, targets: Array) -> 
     return out.getvalue()
 
 
-def _bones(tree: Tree, effectors: Effectors, p: Array, s: Array) -> list[tuple[Array, Array]]:
+def bones(tree: Tree, effectors: Effectors, p: Array, s: Array) -> list[tuple[Array, Array]]:
     """Start and end of each straight piece of the body."""
     joints = [
         (p[parent] if parent >= 0 else np.zeros(3), p[j]) for j, parent in enumerate(tree.parents)
