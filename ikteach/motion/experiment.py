@@ -7,13 +7,29 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ikteach.arrays import Array, ArrayLike
+from ikteach.arrays import Array, ArrayLike, Index
 from ikteach.body import Effectors, Tree, forward, jacobian, locate
-from ikteach.motion.step import solver_of, step
+from ikteach.motion.step import Cap, solver_of, step, whole
 from ikteach.motion.track import Track
-from ikteach.solvers import SOLVERS, Solver, transpose
+from ikteach.solvers import SOLVERS, Solver, name_of, transpose
 
 SMALL = radians(0.1)  # [rad]; a joint that turns less in a frame counts as standing
+
+
+def capped(
+    solver: Solver, max_step: float | None, chains: Index, cap: Cap = whole
+) -> Solver:
+    """`solver` with its step shortened to max_step [rad] by `cap`; None leaves it as it is.
+
+    For races in which each method has a cap of its own. `Effectors.chains` are the chains.
+    """
+
+    def shortened(J: Array, e: Array) -> Array:
+        dtheta = solver(J, e)
+        return dtheta if max_step is None else cap(dtheta, max_step, chains)
+
+    shortened.__name__ = name_of(solver)
+    return shortened
 
 
 class Downhill(NamedTuple):
