@@ -201,7 +201,9 @@ def trials(
         times = np.arange(1, round(seconds * rate) + 1) / rate
         targets = np.stack([motion(times) for motion in motions.values()], axis=1)
         for method, solver in methods.items():
-            bounds = [np.inf if (c := chosen.get(method)) is None else c for chosen in caps.values()]
+            bounds = [
+                np.inf if (c := chosen.get(method)) is None else c for chosen in caps.values()
+            ]
             run = track(
                 tree, effectors, targets[:, None, :, None], solver, times=times,
                 theta=np.broadcast_to(starts, (len(caps), len(motions), *starts.shape)),
@@ -277,7 +279,8 @@ def _measures(run: Track, member: tuple[int, ...]) -> dict[str, float]:
 
 
 def spread(
-    table: pd.DataFrame, measures: Iterable[str] = ("mean", "jitter", "reversals"),
+    table: pd.DataFrame,
+    measures: Iterable[str] = ("mean", "jitter", "reversals"),
     by: Iterable[str] = ("caps", "motion", "method"),
 ) -> pd.DataFrame:
     """Mean and standard deviation of measures of `trials`, over starts and rates."""

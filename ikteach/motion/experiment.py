@@ -16,9 +16,7 @@ from ikteach.solvers import SOLVERS, Solver, name_of, transpose
 SMALL = radians(0.1)  # [rad]; a joint that turns less in a frame counts as standing
 
 
-def capped(
-    solver: Solver, max_step: float | None, chains: Index, cap: Cap = whole
-) -> Solver:
+def capped(solver: Solver, max_step: float | None, chains: Index, cap: Cap = whole) -> Solver:
     """`solver` with its step shortened to max_step [rad] by `cap`; None leaves it as it is.
 
     For races in which each method has a cap of its own. `Effectors.chains` are the chains.
