@@ -62,6 +62,4 @@ def factors(J: Array, e: Array, dtheta: Array, *, least: float = 1e-9) -> Array:
     U, _, Vt = np.linalg.svd(J, full_matrices=False)
     alpha = np.vecmat(e, U)
     asked = abs(alpha) > least * np.linalg.norm(e, axis=-1, keepdims=True)
-    return np.divide(
-        np.matvec(Vt, dtheta), alpha, out=np.full_like(alpha, np.nan), where=asked
-    )
+    return np.divide(np.matvec(Vt, dtheta), alpha, out=np.full_like(alpha, np.nan), where=asked)

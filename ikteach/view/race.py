@@ -192,7 +192,9 @@ class Race(widgets.VBox):  # type: ignore[misc]
         self._chart.png = self._plot.png(tracks, session.method)
         if table:
             self.scene.driver.description = self._chart.alt = self._words()
-            self._table.value = _table(distances(tracks).to_html) if tracks else "<p>No tick yet.</p>"
+            self._table.value = (
+                _table(distances(tracks).to_html) if tracks else "<p>No tick yet.</p>"
+            )
 
     def _words(self) -> str:
         """Who is how far from the targets, on average of the last seconds."""

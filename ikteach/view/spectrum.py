@@ -38,7 +38,9 @@ class Spectrum:
         figure = Figure(figsize=(10.4, 4.2), dpi=90)
         bars, front, side = figure.subplots(1, 3, width_ratios=[2.1, 1.3, 0.95])
         figure.subplots_adjust(left=0.065, right=0.99, bottom=0.12, top=0.91, wspace=0.3)
-        bars.set(yscale="log", ylim=(LOW, HIGH), xlim=(0.3, COUNT + 0.7), xticks=range(1, COUNT + 1))
+        bars.set(
+            yscale="log", ylim=(LOW, HIGH), xlim=(0.3, COUNT + 0.7), xticks=range(1, COUNT + 1)
+        )
         bars.set(xlabel="singular direction i, strongest first", ylabel="answer f [rad/m]")
         bars.set_title("Δθ = Σ f (uᵀe) v: what f each method takes")
         bars.grid(alpha=0.3, axis="y")
@@ -119,7 +121,9 @@ def _table(found: Directions, answers: list[Array]) -> str:
         for i, row in enumerate(np.transpose(columns), start=1)
     )
     head = "".join(f"<th>{name}</th>" for name in heads)
-    return f'<table class="ikteach-table"><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>'
+    return (
+        f'<table class="ikteach-table"><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>'
+    )
 
 
 def _number(value: float) -> str:

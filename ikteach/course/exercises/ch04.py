@@ -28,8 +28,13 @@ def projector(answer: Answer) -> None:
         expect(
             np.allclose(J @ P, 0, atol=1e-8), "JP is not zero: what P lets through moves effectors."
         )
-        expect(np.allclose(P @ P, P, atol=1e-8), "P² is not P: to project twice must change nothing.")
-        expect(np.allclose(P, P.T, atol=1e-8), "P is not symmetric: it does not project at right angles.")
+        expect(
+            np.allclose(P @ P, P, atol=1e-8), "P² is not P: to project twice must change nothing."
+        )
+        expect(
+            np.allclose(P, P.T, atol=1e-8),
+            "P is not symmetric: it does not project at right angles.",
+        )
         expect(
             abs(np.trace(P) - (n - rank)) < 1e-6,
             f"The trace of P is {np.trace(P):.2f}; it counts the free directions, and J of rank "

@@ -26,7 +26,7 @@ def made_up(seed: int) -> pd.DataFrame:
     "08.order",
     returns=list,
     hints=[
-        "`table.groupby(\"method\", observed=True)` puts the rows of a method together.",
+        '`table.groupby("method", observed=True)` puts the rows of a method together.',
         "Take the mean of `error` of each group, `sort_values()`, and give its index as a list.",
     ],
 )
@@ -41,7 +41,8 @@ def order(answer: Answer) -> None:
             f"The order must name each of {', '.join(SOLVERS)} once; yours is {found}.",
         )
         expect(
-            found != wanted[::-1], "Your order is upside down: the nearest, with the least mean, first."
+            found != wanted[::-1],
+            "Your order is upside down: the nearest, with the least mean, first.",
         )
         expect(
             found == wanted,
@@ -81,9 +82,7 @@ def experiment(answer: Answer) -> None:
     missing = [name for name in COLUMNS if name not in log]
     expect(not missing, f"The log has no column {missing[:1]}; `study.compare` makes them all.")
     methods = sorted(map(str, log["method"].unique()))
-    expect(
-        methods == sorted(SOLVERS), f"The log must hold all four methods; it holds {methods}."
-    )
+    expect(methods == sorted(SOLVERS), f"The log must hold all four methods; it holds {methods}.")
     expect(np.isfinite(log["error"]).all(), "The log has distances that are not numbers.")
     parts = {m: part for m, part in log.groupby("method", observed=True)}
     frames = {str(m): (len(part), part["time"].max()) for m, part in parts.items()}
