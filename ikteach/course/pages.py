@@ -63,6 +63,7 @@ def page(path: Path, titles: Mapping[str, str]) -> str:
         timeout=300,
         resources={"metadata": {"path": path.parent}},
         extra_arguments=["--log-level=ERROR"],
+        store_widget_state=False,
     )
     client.execute()
     (path.parent / "predictions.json").unlink(missing_ok=True)

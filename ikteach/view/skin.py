@@ -12,6 +12,7 @@ BLUE, ORANGE, RED, GREEN = "#0072b2", "#e69f00", "#d55e00", "#009e73"
 PURPLE, SKY, GREY = "#cc79a7", "#56b4e9", "#808890"
 EFFECTOR_COLOURS = (BLUE, ORANGE, RED, GREEN, PURPLE, SKY)
 
+LIGHT, DARK = "#f4f6f8", "#0f1318"  # backgrounds
 SKIN, SHIRT, TROUSERS, SHOES, HAIR = "#d9a57e", "#5f8fb4", "#4a5568", "#2d3340", "#4b3a2f"
 
 
@@ -63,12 +64,39 @@ def human_skin() -> list[Part]:
     return parts
 
 
+def simulator_skin() -> list[Part]:
+    """The figure of CS 490, `figures.simulator()`: two segments of the back, a round head."""
+    parts: list[Part] = [
+        Ball(None, (0, 0.045, 0), (0.15, 0.11, 0.105), TROUSERS),
+        Limb("back.lower", (0, 0, 0), (0, 0.2, 0), 0.115, 0.115, SHIRT),
+        Ball("back.upper", (0, 0.08, 0), (0.17, 0.15, 0.115), SHIRT),
+        Limb("back.upper", (-0.19, 0.2026, 0), (0.19, 0.2026, 0), 0.052, 0.052, SHIRT),
+        Limb("back.upper", (0, 0.2, 0), (0, 0.28, 0), 0.05, 0.045, SKIN),
+        Ball("neck", (0, 0.14, 0.01), (0.105, 0.105, 0.105), SKIN),
+        Ball("neck", (0, 0.158, -0.014), (0.107, 0.1, 0.1), HAIR),
+        Ball("neck", (0, 0.13, 0.118), (0.018, 0.022, 0.024), SKIN),
+        Ball("neck", (0.04, 0.15, 0.101), (0.012, 0.012, 0.012), HAIR),
+        Ball("neck", (-0.04, 0.15, 0.101), (0.012, 0.012, 0.012), HAIR),
+    ]
+    for side in "lr":
+        parts += [
+            Limb(f"shoulder.x.{side}", (0, 0, 0), (0, -0.3348, 0), 0.052, 0.042, SHIRT),
+            Limb(f"elbow.{side}", (0, 0, 0), (0, -0.27, 0), 0.04, 0.03, SKIN),
+            Ball(f"elbow.{side}", (0, -0.335, 0), (0.022, 0.075, 0.042), SKIN),
+            Limb(f"hip.z.{side}", (0, 0, 0), (0, -0.441, 0), 0.083, 0.058, TROUSERS),
+            Limb(f"knee.{side}", (0, 0, 0), (0, -0.4428, 0), 0.056, 0.04, TROUSERS),
+            Limb(f"ankle.{side}", (0, -0.045, -0.05), (0, -0.05, 0.13), 0.035, 0.028, SHOES),
+            Ball(f"ankle.{side}", (0, -0.05, 0.15), (0.042, 0.026, 0.05), SHOES),
+        ]
+    return parts
+
+
 def stick_skin(tree: Tree, effectors: Effectors, thick: float = 0.03) -> list[Part]:
     """Rods between joints, and from joints to effectors, for any tree."""
     parts: list[Part] = []
     for j, name in enumerate(tree.names):
         parent = tree.names[tree.parents[j]] if tree.parents[j] >= 0 else None
-        parts.append(Ball(name, (0, 0, 0), (1.4 * thick,) * 3, GREY))
+        parts.append(Ball(name, (0, 0, 0), (1.4 * thick,) * 3, TROUSERS))
         if tree.offsets[j].any():
             parts.append(Limb(parent, (0, 0, 0), tree.offsets[j].tolist(), thick, thick, SHIRT))
     for joint, offset in zip(effectors.joints, effectors.offsets, strict=True):
@@ -77,8 +105,19 @@ def stick_skin(tree: Tree, effectors: Effectors, thick: float = 0.03) -> list[Pa
     return parts
 
 
-def skin_of(tree: Tree, effectors: Effectors) -> list[Part]:
-    """The human's skin if it fits the tree, else rods."""
-    parts = human_skin()
-    fits = {part.joint for part in parts} - {None} <= set(tree.names)
-    return parts if fits else stick_skin(tree, effectors)
+def body_skin(tree: Tree) -> list[Part]:
+    """The human's or the simulator's skin, if one of them fits the tree; else none."""
+    for parts in human_skin(), simulator_skin():
+        if {part.joint for part in parts} - {None} <= set(tree.names):
+            return parts
+    return []
+
+
+def has_human_skin(tree: Tree) -> bool:
+    """Whether it looks like a human."""
+    return bool(body_skin(tree))
+
+
+def skin_of(tree: Tree, effectors: Effectors, thick: float = 0.03) -> list[Part]:
+    """The skin of a human if it fits the tree, else rods so thick."""
+    return body_skin(tree) or stick_skin(tree, effectors, thick)

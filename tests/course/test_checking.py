@@ -1,5 +1,6 @@
 """The machinery of the checks: whatever an answer does, a sentence comes of it."""
 
+import contextlib
 import json
 import subprocess
 import sys
@@ -183,10 +184,8 @@ def endless(x: Any) -> Any:
 
 def stubborn(x: Any) -> Any:
     while True:
-        try:
+        with contextlib.suppress(Exception):
             x = x + 1
-        except Exception:
-            pass
 
 
 def sleeper(x: Any) -> Any:
