@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from ikteach.arrays import Array, ArrayLike, Mask
+from ikteach.arrays import ArrayLike, Mask
 from ikteach.body import Effectors, Tree
-from ikteach.motion import Gait, Track, reachable, track
+from ikteach.motion import Track, reachable, track
 from ikteach.motion.experiment import reversals
 from ikteach.solvers import SOLVERS, Solver
 
@@ -166,78 +166,6 @@ def timing(tracks: Mapping[str, Track]) -> pd.Series:
     return pd.Series(seconds, name="seconds a step", dtype=float).rename_axis("method")
 
 
-Caps = Mapping[str, float | None]  # a cap for each method [rad]; None: no cap
-
-
-def trials(
-    tree: Tree,
-    effectors: Effectors,
-    motions: Mapping[str, Gait],
-    *,
-    caps: Mapping[str, Caps],
-    starts: Array,
-    rates: Iterable[int] = (15, 30, 60),
-    seconds: float = 3.0,
-    settle: float = 1.0,
-    methods: Mapping[str, Solver] = SOLVERS,
-    **options: Any,
-) -> pd.DataFrame:
-    """The fair experiment: every method on every motion, under every set of caps, from every start.
-
-    caps      {name of the set: {method: cap [rad]}}
-    starts    (s, n) poses to begin from [rad]
-    rates     frames a second, one step a frame
-    settle    the first seconds of each run, which are left out of all measures
-    options   go to `step`, the same for all
-
-    Returns a row for each motion, set of caps, rate, start and method, with the measures of
-    `variants`; beside them the mean distance of the effectors that can `reach` their targets
-    through the whole cycle, and of those that cannot (`out_of_reach`); not a number where there
-    are none [m]. All runs of one method and rate go through one batch.
-    """
-    can_reach = reachable_throughout(tree, effectors, motions)
-    rows = []
-    for rate in rates:
-        times = np.arange(1, round(seconds * rate) + 1) / rate
-        targets = np.stack([motion(times) for motion in motions.values()], axis=1)
-        for method, solver in methods.items():
-            bounds = [
-                np.inf if (c := chosen.get(method)) is None else c for chosen in caps.values()
-            ]
-            run = track(
-                tree, effectors, targets[:, None, :, None], solver, times=times,
-                theta=np.broadcast_to(starts, (len(caps), len(motions), *starts.shape)),
-                max_step=np.array(bounds)[:, None, None], **options,
-            )  # fmt: skip
-            run = after(run, settle)
-            for c, m, s in np.ndindex(run.theta.shape[1:-1]):
-                error, reach = run.error[:, c, m, s], can_reach[m]
-                rows.append(
-                    {
-                        "motion": list(motions)[m],
-                        "caps": list(caps)[c],
-                        "rate": rate,
-                        "start": s,
-                        "method": method,
-                        **_measures(run, (c, m, s)),
-                        "reach": error[:, reach].mean() if reach.any() else np.nan,
-                        "out_of_reach": error[:, ~reach].mean() if not reach.all() else np.nan,
-                    }
-                )
-    table = pd.DataFrame(rows)
-    table["method"] = pd.Categorical(table["method"], categories=list(methods))
-    return table
-
-
-def reachable_throughout(
-    tree: Tree, effectors: Effectors, motions: Mapping[str, Gait], phases: int = 8
-) -> Mask:
-    """Which effectors reach their targets in every one of so many phases of each motion: (m, k)."""
-    angles = np.linspace(0, 2 * np.pi, phases, endpoint=False)
-    targets = np.stack([motion.at(angles) for motion in motions.values()])
-    return reachable(tree, effectors, targets).all(axis=1)
-
-
 def after(run: Track, seconds: float) -> Track:
     """The run without its first seconds, in which a method finds its targets."""
     late = run.times > seconds
@@ -258,12 +186,21 @@ def variants(run: Track, labels: Iterable[Any], name: str = "variant") -> pd.Dat
     names = list(labels)
     if run.theta.ndim != 3 or run.theta.shape[1] != len(names):
         raise ValueError(f"{len(names)} labels do not fit a batch of {run.theta.shape[1:-1]}")
-    rows = [_measures(run, (i,)) for i in range(len(names))]
+    rows = [measures(run, (i,)) for i in range(len(names))]
     return pd.DataFrame(rows, index=pd.Index(names, name=name))
 
 
-def _measures(run: Track, member: tuple[int, ...]) -> dict[str, float]:
-    """The measures of one member of a batch."""
+def overview(tracks: Mapping[str, Track], name: str = "method") -> pd.DataFrame:
+    """What runs without batches come to, a row for each: the columns of `variants`.
+
+    It asks nobody what can be reached, and is quick where the full `log` is not.
+    """
+    rows = [measures(run, ()) for run in tracks.values()]
+    return pd.DataFrame(rows, index=pd.Index(list(tracks), name=name))
+
+
+def measures(run: Track, member: tuple[Any, ...]) -> dict[str, float]:
+    """The measures of one member of a batch; () where there is no batch."""
     error = run.error[:, *member]
     return {
         "mean": error.mean(),
@@ -276,36 +213,3 @@ def _measures(run: Track, member: tuple[int, ...]) -> dict[str, float]:
         "held": run.held[:, *member].sum(axis=-1).mean(),
         "smallest_sigma": run.smallest_sigma[:, *member].min(),
     }
-
-
-def spread(
-    table: pd.DataFrame,
-    measures: Iterable[str] = ("mean", "jitter", "reversals"),
-    by: Iterable[str] = ("caps", "motion", "method"),
-) -> pd.DataFrame:
-    """Mean and standard deviation of measures of `trials`, over starts and rates."""
-    return table.groupby(list(by), observed=True)[list(measures)].agg(["mean", "std"])
-
-
-def ranking(
-    table: pd.DataFrame, measure: str, by: Iterable[str] = ("caps", "motion")
-) -> pd.DataFrame:
-    """The methods in order of a measure of `trials`, the least first, a row for each value of `by`.
-
-    order   the methods by their mean over starts and rates
-    wins    in what share of the trials the first has less than the second: 1 is a clear verdict,
-            ½ is a toss-up
-    """
-    by = list(by)
-    rows = {}
-    for key, part in table.groupby(by, observed=True):
-        wide = part.pivot_table(
-            index=["motion", "caps", "rate", "start"], columns="method", values=measure,
-            observed=True,
-        )  # fmt: skip
-        order = list(wide.mean().sort_values().index)
-        wins = (wide[order[0]] < wide[order[1]]).mean()
-        rows[key] = {"order": " < ".join(order), "first": order[0], "wins": wins}
-    ranked = pd.DataFrame.from_dict(rows, orient="index")
-    ranked.index = pd.MultiIndex.from_tuples(rows, names=by)
-    return ranked

@@ -1,4 +1,4 @@
-"""Chapter 8. Runs made to be compared: from many poses at once, at any frame rate, counted fairly."""
+"""Chapter 8. Runs made to be compared: from many poses at once, at any rate, counted fairly."""
 
 from collections.abc import Mapping
 from math import radians
@@ -50,10 +50,11 @@ def downhill(
     """
     theta, gains = np.asarray(theta, dtype=float), np.asarray(gains, dtype=float)[:, None]
     frames = forward(tree, theta)
-    e = np.ravel(targets - locate(frames, effectors))
+    goal = np.asarray(targets, dtype=float)
+    e = np.ravel(goal - locate(frames, effectors))
     J = jacobian(tree, frames, effectors)
     dtheta = transpose(J, e)
-    left = targets - locate(forward(tree, theta + gains * dtheta), effectors)
+    left = goal - locate(forward(tree, theta + gains * dtheta), effectors)
     return Downhill(
         np.square(e - gains * (J @ dtheta)).sum(axis=-1), np.square(left).sum(axis=(-1, -2))
     )
@@ -114,16 +115,17 @@ def iterations(
 
     Infinite where `most` steps are not enough. `options` go to `step`.
     """
+    goal = np.asarray(targets, dtype=float)
     pose = np.asarray(tree.rest if theta is None else theta, dtype=float)
-    batch = np.broadcast_shapes(pose.shape[:-1], np.shape(targets)[:-2])
+    batch = np.broadcast_shapes(pose.shape[:-1], goal.shape[:-2])
     pose = np.broadcast_to(pose, (*batch, len(tree)))
     count = np.full(batch, np.inf)
     for n in range(most + 1):
-        gap = np.linalg.norm(targets - locate(forward(tree, pose), effectors), axis=-1)
+        gap = np.linalg.norm(goal - locate(forward(tree, pose), effectors), axis=-1)
         count = np.where((gap <= within).all(axis=-1), np.minimum(count, n), count)
         if n == most or np.isfinite(count).all():
             break
-        pose = step(tree, pose, effectors, targets, solver, **options).theta
+        pose = step(tree, pose, effectors, goal, solver, **options).theta
     return count
 
 

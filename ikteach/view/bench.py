@@ -1,4 +1,4 @@
-"""A bench: sliders and buttons over a picture that answers them. Chapters 3, 5 and 6 stand on it."""
+"""A bench: sliders and buttons over a picture that answers them, for chapters 3, 5 and 6."""
 
 import asyncio
 import html
