@@ -18,6 +18,7 @@ from ikteach.motion import Gait, Step, Track, gait, reachable, step, track
 from ikteach.solvers import (
     SOLVERS,
     conditioning,
+    cramer,
     dls,
     dls_following,
     ellipsoid,
@@ -39,6 +40,7 @@ __all__ = [
     "Track",
     "Tree",
     "conditioning",
+    "cramer",
     "dls",
     "dls_following",
     "ellipsoid",

@@ -1,11 +1,18 @@
-"""Every notebook of the course runs from top to bottom in a fresh kernel, and is clean."""
+"""Every notebook, in both builds, runs in a fresh kernel, forwards and then backwards, cleanly."""
 
+import ast
+import asyncio
+import copy
+import json
 import os
 from pathlib import Path
+from typing import Any
 
 import nbformat
 import pytest
 from nbclient import NotebookClient
+
+from ikteach.course import builds
 
 NOTEBOOKS = sorted((Path(__file__).parents[1] / "notebooks").glob("*.ipynb"))
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -15,15 +22,61 @@ def test_there_are_notebooks() -> None:
     assert NOTEBOOKS
 
 
+def built(path: Path, build: str) -> Any:
+    """The notebook of that build; a student's goes on from its end back to its start."""
+    notebook = builds.clean(nbformat.read(path, as_version=4))
+    if build == "instructor":
+        return builds.with_solutions(notebook)
+    again = copy.deepcopy([cell for cell in notebook.cells if cell.cell_type == "code"])
+    for cell in again:
+        cell.id += "-again"
+    notebook.cells += again[::-1]
+    return notebook
+
+
+Run = tuple[Path, str]
+
+
+@pytest.fixture(scope="module")
+def runs(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> dict[Run, Any]:
+    """What is asked for of each notebook and build: the notebook as it was run, or what went wrong.
+
+    Two run at a time.
+    """
+    wanted = [item.callspec.params for item in request.session.items if hasattr(item, "callspec")]
+    pairs = dict.fromkeys((p["path"], p["build"]) for p in wanted if {"path", "build"} <= set(p))
+    places = asyncio.Semaphore(2)
+
+    async def run(pair: Run) -> Any:
+        resources = {"metadata": {"path": str(tmp_path_factory.mktemp("run"))}}
+        notebook = built(*pair)
+        async with places:
+            await NotebookClient(notebook, timeout=60, resources=resources).async_execute()
+        return notebook
+
+    async def run_all() -> list[Any]:
+        return await asyncio.gather(*map(run, pairs), return_exceptions=True)
+
+    return dict(zip(pairs, asyncio.run(run_all()), strict=True))
+
+
 @pytest.mark.filterwarnings("ignore:Proactor event loop:RuntimeWarning")
+@pytest.mark.parametrize("build", ["student", "instructor"])
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_runs_without_errors_or_warnings(path: Path, tmp_path: Path) -> None:
-    notebook = nbformat.read(path, as_version=4)
-    client = NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(tmp_path)}})
-    client.execute()
+def test_runs_without_errors_or_warnings(path: Path, build: str, runs: Any) -> None:
+    notebook = runs[path, build]
+    if isinstance(notebook, BaseException):
+        raise notebook
     for cell in notebook.cells:
+        said = json.dumps(cell.get("outputs", []), ensure_ascii=False)
         for output in cell.get("outputs", []):
             assert output.get("name") != "stderr", f"{cell.id} warns: {output.text}"
+        assert "check itself failed" not in said
+        if cell.cell_type == "code" and list(builds.checks(cell)):
+            solved = "solution" in cell.metadata.get("tags", [])
+            assert ("passes every check" if solved else "Not yet") in said, f"{cell.id}: {said}"
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
@@ -35,3 +88,27 @@ def test_is_committed_clean_and_short(path: Path) -> None:
     assert len(code) <= 15
     assert max(len(cell.source.splitlines()) for cell in code) <= 10
     assert len(prose.split()) <= 1200
+    assert not any("solution" in cell.metadata.get("tags", []) for cell in notebook.cells)
+
+
+def calls(path: Path, name: str) -> list[ast.Call]:
+    """The calls of that function in a notebook."""
+    cells = nbformat.read(path, as_version=4).cells
+    trees = [ast.parse(cell.source) for cell in cells if cell.cell_type == "code"]
+    return [
+        node
+        for tree in trees
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == name
+    ]
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_every_prediction_is_revealed(path: Path) -> None:
+    asked, shown = (
+        [ast.literal_eval(call.args[0]) for call in calls(path, name)]
+        for name in ("predict", "reveal")
+    )
+    assert set(asked) == set(shown)
+    assert len(asked) == len(set(asked))
+    assert all(key.startswith(path.name[:2] + ".") for key in asked)

@@ -18,7 +18,7 @@ from ikteach.body.tree import Plan, skew
 from ikteach.motion import gait, per_chain, reachable, step, track, whole
 from ikteach.motion.reachable import nearest
 from ikteach.motion.step import clamp_error
-from ikteach.solvers import ellipsoid, sdls
+from ikteach.solvers import adjugate, cramer, determinant, ellipsoid, independence, sdls
 from ikteach.solvers.sdls import hard, lengths, soft
 
 TREE, EFFECTORS = figures.human()
@@ -57,6 +57,10 @@ PROMISES = [  # function, its promise, how to run it
         (solver, "(..., n)", lambda g, solver=solver: solver(g.J, g.e))
         for solver in solvers.SOLVERS.values()
     ),
+    (cramer, "(..., 3)", lambda g: cramer(g.J[..., :3, 2:5], g.e[..., :3])),
+    (adjugate, "(..., 3, 3)", lambda g: adjugate(g.J[..., :3, 2:5])),
+    (determinant, "(...)", lambda g: determinant(g.J[..., :3, 2:5])),
+    (independence, "(...)", lambda g: independence(g.J[..., :3, 2:5])),
     (hard, "(..., n)", lambda g: hard(g.theta, g.T)),
     (lengths, "(..., k, r)", lambda g: lengths(np.ones((*g.batch, 12, 12)))),
     (clamp_error, "(..., k, 3)", lambda g: clamp_error(g.targets, 0.1)),

@@ -1,4 +1,5 @@
-"""The figures of the course: a planar arm, Buss's Y and double Y, a human of 20 joints."""
+"""The figures of the course: a planar arm, Buss's Y and double Y, a human of 20 joints,
+and the figure of CS 490 with 16 degrees of motion."""
 
 from collections.abc import Sequence
 from math import pi, radians, sqrt
@@ -115,6 +116,79 @@ def heels(tree: Tree) -> Effectors:
     return Effectors.of(tree, {f"heel.{side}": (f"ankle.{side}", heel) for side in "lr"})
 
 
+# Rows that one angle turns. The tree keeps a row each, so that `forward` and `jacobian` need not
+# know; who moves the figure gives both the same angle (`ikteach.motion.reach.coupling`).
+TOGETHER = (("back.lower", "back.upper"),)
+
+
+def simulator() -> Figure:
+    """The figure of CS 490: 16 degrees of motion in 17 hinges, pelvis at the origin.
+
+    Each shoulder has two hinges (about y, which swings the arm round, then about x, which raises
+    it), each elbow, knee and ankle one, each hip two, the neck one, which nods. The back has two
+    segments that one angle turns together: two rows, `TOGETHER` one degree of motion. Lengths and
+    limits are those of `human()` but for the neck's −30° to 60°, which are CS 490's, and the
+    shoulder's about y and the back's, which are clinical ranges too. At rest the elbows are a
+    little bent: where an arm is straight, three of its hinges are not independent.
+    """
+    tree = Tree.of(
+        [
+            _hinge("back.lower", None, (0, 0.1, 0), X, -12, 40),
+            _hinge("back.upper", "back.lower", (0, 0.2, 0), X, -12, 40),
+            _hinge("neck", "back.upper", (0, 0.27, 0), X, -30, 60),
+            *_simulator_arm("l", 1),
+            *_simulator_arm("r", -1),
+            *_simulator_leg("l", 1),
+            *_simulator_leg("r", -1),
+        ]
+    )
+    ball, hand = (0, -0.0702, 0.1286), (0, -0.3612, 0)
+    points = {
+        "foot.l": ("ankle.l", ball),
+        "foot.r": ("ankle.r", ball),
+        "hand.r": ("elbow.r", hand),
+        "hand.l": ("elbow.l", hand),
+    }
+    return Figure(tree, Effectors.of(tree, points))
+
+
+def planar_model() -> Figure:
+    """The earlier stage of CS 490: an arm of three links in the plane, with limits, 1.2 m long."""
+    lengths = 0.5, 0.4, 0.3
+    limits = (-180, 180), (-150, 150), (-120, 120)
+    rest = 60, -60, -45
+    joints = [
+        Joint(
+            f"joint{i}", f"joint{i - 1}" if i > 1 else None, (offset, 0, 0), Z,
+            lower=radians(lower), upper=radians(upper), rest=radians(angle),
+        )
+        for i, offset, (lower, upper), angle in zip(
+            (1, 2, 3), (0.0, *lengths), limits, rest, strict=False
+        )
+    ]  # fmt: skip
+    tree = Tree.of(joints)
+    return Figure(tree, Effectors.of(tree, {"hand": ("joint3", (lengths[-1], 0, 0))}))
+
+
+def _simulator_arm(side: str, x: int) -> list[Joint]:
+    y_axis, x_axis = f"shoulder.y.{side}", f"shoulder.x.{side}"
+    return [
+        _hinge(y_axis, "back.upper", (x * 0.2322, 0.2184, 0), (0, x, 0), -40, 135),
+        _hinge(x_axis, y_axis, (0, 0, 0), (-1, 0, 0), -60, 180),
+        _hinge(f"elbow.{side}", x_axis, (0, -0.3348, 0), (-1, 0, 0), 0, 150, rest=20),
+    ]
+
+
+def _simulator_leg(side: str, x: int) -> list[Joint]:
+    x_axis, z_axis, knee = f"hip.x.{side}", f"hip.z.{side}", f"knee.{side}"
+    return [
+        _hinge(x_axis, None, (x * 0.0835, 0, 0), (-1, 0, 0), -30, 120),
+        _hinge(z_axis, x_axis, (0, 0, 0), (0, 0, x), -30, 45),
+        _hinge(knee, z_axis, (0, -0.441, 0), X, 0, 140),
+        _hinge(f"ankle.{side}", knee, (0, -0.4428, 0), (-1, 0, 0), -50, 20),
+    ]
+
+
 def _arm(side: str, x: int) -> list[Joint]:
     # The mirror image of a rotation about y or z turns the other way round, one about x does not.
     bend, out, turn = (f"shoulder.{way}.{side}" for way in ("bend", "out", "turn"))
@@ -139,10 +213,19 @@ def _leg(side: str, x: int) -> list[Joint]:
 
 
 def _hinge(
-    name: str, parent: str | None, offset: Vector, axis: Vector, lower: float, upper: float
+    name: str,
+    parent: str | None,
+    offset: Vector,
+    axis: Vector,
+    lower: float,
+    upper: float,
+    rest: float = 0.0,
 ) -> Joint:
-    """A hinge with its limits in degrees."""
-    return Joint(name, parent, offset, axis, lower=radians(lower), upper=radians(upper))
+    """A hinge with its limits and its rest in degrees."""
+    return Joint(
+        name, parent, offset, axis,
+        lower=radians(lower), upper=radians(upper), rest=radians(rest),
+    )  # fmt: skip
 
 
 def _in_world(

@@ -11,6 +11,7 @@ from typing import Any
 
 from ikteach.arrays import Array
 from ikteach.names import unknown
+from ikteach.solvers.cramer import adjugate, cramer, determinant, independence
 from ikteach.solvers.dls import dls, dls_following
 from ikteach.solvers.pseudoinverse import pseudoinverse
 from ikteach.solvers.sdls import sdls
@@ -40,10 +41,14 @@ __all__ = [
     "Ellipsoid",
     "Solver",
     "Solvers",
+    "adjugate",
     "conditioning",
+    "cramer",
+    "determinant",
     "dls",
     "dls_following",
     "ellipsoid",
+    "independence",
     "manipulability",
     "name_of",
     "pseudoinverse",

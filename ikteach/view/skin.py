@@ -64,6 +64,33 @@ def human_skin() -> list[Part]:
     return parts
 
 
+def simulator_skin() -> list[Part]:
+    """The figure of CS 490, `figures.simulator()`: two segments of the back, a round head."""
+    parts: list[Part] = [
+        Ball(None, (0, 0.045, 0), (0.15, 0.11, 0.105), TROUSERS),
+        Limb("back.lower", (0, 0, 0), (0, 0.2, 0), 0.115, 0.115, SHIRT),
+        Ball("back.upper", (0, 0.08, 0), (0.17, 0.15, 0.115), SHIRT),
+        Limb("back.upper", (-0.19, 0.2026, 0), (0.19, 0.2026, 0), 0.052, 0.052, SHIRT),
+        Limb("back.upper", (0, 0.2, 0), (0, 0.28, 0), 0.05, 0.045, SKIN),
+        Ball("neck", (0, 0.14, 0.01), (0.105, 0.105, 0.105), SKIN),
+        Ball("neck", (0, 0.158, -0.014), (0.107, 0.1, 0.1), HAIR),
+        Ball("neck", (0, 0.13, 0.118), (0.018, 0.022, 0.024), SKIN),
+        Ball("neck", (0.04, 0.15, 0.101), (0.012, 0.012, 0.012), HAIR),
+        Ball("neck", (-0.04, 0.15, 0.101), (0.012, 0.012, 0.012), HAIR),
+    ]
+    for side in "lr":
+        parts += [
+            Limb(f"shoulder.x.{side}", (0, 0, 0), (0, -0.3348, 0), 0.052, 0.042, SHIRT),
+            Limb(f"elbow.{side}", (0, 0, 0), (0, -0.27, 0), 0.04, 0.03, SKIN),
+            Ball(f"elbow.{side}", (0, -0.335, 0), (0.022, 0.075, 0.042), SKIN),
+            Limb(f"hip.z.{side}", (0, 0, 0), (0, -0.441, 0), 0.083, 0.058, TROUSERS),
+            Limb(f"knee.{side}", (0, 0, 0), (0, -0.4428, 0), 0.056, 0.04, TROUSERS),
+            Limb(f"ankle.{side}", (0, -0.045, -0.05), (0, -0.05, 0.13), 0.035, 0.028, SHOES),
+            Ball(f"ankle.{side}", (0, -0.05, 0.15), (0.042, 0.026, 0.05), SHOES),
+        ]
+    return parts
+
+
 def stick_skin(tree: Tree, effectors: Effectors, thick: float = 0.03) -> list[Part]:
     """Rods between joints, and from joints to effectors, for any tree."""
     parts: list[Part] = []
@@ -78,11 +105,19 @@ def stick_skin(tree: Tree, effectors: Effectors, thick: float = 0.03) -> list[Pa
     return parts
 
 
+def body_skin(tree: Tree) -> list[Part]:
+    """The human's or the simulator's skin, if one of them fits the tree; else none."""
+    for parts in human_skin(), simulator_skin():
+        if {part.joint for part in parts} - {None} <= set(tree.names):
+            return parts
+    return []
+
+
 def has_human_skin(tree: Tree) -> bool:
-    """Whether the human's skin fits the tree."""
-    return {part.joint for part in human_skin()} - {None} <= set(tree.names)
+    """Whether it looks like a human."""
+    return bool(body_skin(tree))
 
 
 def skin_of(tree: Tree, effectors: Effectors, thick: float = 0.03) -> list[Part]:
-    """The human's skin if it fits the tree, else rods so thick."""
-    return human_skin() if has_human_skin(tree) else stick_skin(tree, effectors, thick)
+    """The skin of a human if it fits the tree, else rods so thick."""
+    return body_skin(tree) or stick_skin(tree, effectors, thick)

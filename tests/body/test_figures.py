@@ -75,3 +75,42 @@ def test_an_arm_is_stretched_along_x(links):
 def test_an_arm_without_links(links):
     with pytest.raises(ValueError, match="an arm needs links longer than 0"):
         figures.planar_arm(links)
+
+
+def test_the_simulator_has_16_degrees_of_motion():
+    tree, effectors = figures.simulator()
+    shared = sum(len(rows) - 1 for rows in figures.TOGETHER)
+    assert len(tree) - shared == 16
+    for rows in figures.TOGETHER:  # one angle fits all of them, and turns them alike
+        joints = [tree.index(row) for row in rows]
+        for column in (tree.lower, tree.upper, tree.rest, tree.axes):
+            assert_array_equal(column[joints], column[joints[:1]].repeat(len(joints), axis=0))
+    neck = tree.index("neck")
+    assert_allclose(np.degrees([tree.lower[neck], tree.upper[neck]]), [-30, 60])
+    assert (np.degrees(tree.upper - tree.lower) <= 240).all()
+    assert effectors.names == figures.human().effectors.names
+
+
+def test_the_simulator_is_a_human_with_fewer_hinges():
+    """Stretched out, both figures have their hands and feet in the same places."""
+    (tree, effectors), (human, human_effectors) = figures.simulator(), figures.human()
+    straight, upright = np.zeros(len(tree)), np.zeros(len(human))
+    s = locate(forward(tree, straight), effectors)
+    assert_allclose(s, locate(forward(human, upright), human_effectors), atol=1e-12)
+    assert_allclose(s[0], s[1] * [-1, 1, 1])
+    # Raised by the shoulder's x axis the arms point forward, and its y axis swings them outward.
+    for side, x in ("l", 1), ("r", -1):
+        straight[tree.index(f"shoulder.x.{side}")] = np.pi / 2
+        straight[tree.index(f"shoulder.y.{side}")] = np.pi / 2
+        shoulder = forward(tree, straight).positions[tree.index(f"shoulder.y.{side}")]
+        hand = locate(forward(tree, straight), effectors)[effectors.names.index(f"hand.{side}")]
+        assert_allclose(hand - shoulder, [0.696 * x, 0, 0], atol=1e-12)
+
+
+def test_the_planar_model_stays_in_its_plane():
+    tree, effectors = figures.planar_model()
+    theta = np.random.default_rng(0).uniform(tree.lower, tree.upper, (50, 3))
+    s = locate(forward(tree, theta), effectors)
+    assert_allclose(s[..., 2], 0)
+    assert np.linalg.norm(s, axis=-1).max() <= 1.2
+    assert len(tree) == 3
