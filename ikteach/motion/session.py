@@ -43,6 +43,8 @@ class Session:
     by_hand   True where the targets stay where `aim` has put them, and the gait rests
     dt        clock time of one tick [s]
     options   go to `step`, the same for all methods; set them with `adjust`
+    caps      {method: max_step [rad] or None}: the step caps of methods that have their own; set
+              them with `bound`
     keep      how many ticks the record holds; `dropped` counts those it has let go
     events    the last changes, notes and errors; `events_dropped` counts those it has let go
     """
@@ -63,6 +65,7 @@ class Session:
         self.methods = dict(methods)
         self.dt = dt
         self.options = options
+        self.caps: Mapping[str, float | None] = {}
         self.record: deque[Moment] = deque(maxlen=keep)
         self.events: deque[Event] = deque(maxlen=keep_events)
         self.runs = self.events_dropped = self.ticks = self._waited = 0
@@ -118,6 +121,14 @@ class Session:
         self._change(
             "options", in_words(options), going_on=self._soon("options", options), options=new
         )
+
+    def bound(self, caps: Mapping[str, float | None]) -> None:
+        """Give methods step caps of their own [rad], None for no cap; {}: all by `options`."""
+        for method, cap in caps.items():
+            known = self._known(method)
+            self._try(known, self.methods[known], self.options | {"max_step": cap})
+        same = self._soon("caps", caps)
+        self._change("caps", dict(caps), going_on=same, caps=dict(caps))
 
     @property
     def by_hand(self) -> bool:
@@ -206,7 +217,7 @@ class Session:
         for name, solver in self.methods.items():
             tick = step(
                 self.tree, self.theta[name], self.effectors, self.targets, solver,
-                mobility=free, **self.options,
+                mobility=free, **self.options_of(name),
             )  # fmt: skip
             s = locate(forward(self.tree, tick.theta), self.effectors)
             error = np.linalg.norm(self.targets - s, axis=-1)
@@ -222,6 +233,11 @@ class Session:
         )  # fmt: skip
 
     # What can be asked.
+
+    def options_of(self, method: str) -> dict[str, Any]:
+        """What goes to `step` for a method."""
+        own = {"max_step": self.caps[method]} if method in self.caps else {}
+        return {**self.options, **own}
 
     @property
     def error(self) -> Array:
@@ -273,6 +289,7 @@ class Session:
             "gait": in_words(vars(self.gait)),
             "methods": in_words(self.methods),
             "options": in_words(self.options),
+            "caps": in_words(self.caps),
         }
 
     def _recent(self, last: int | None) -> list[Moment]:
@@ -334,7 +351,7 @@ class Session:
         step(self.tree, self.theta[method], self.effectors, self.targets, solver, **options)
 
 
-_STATE = ("method", "methods", "options", "targets", "_gait", "_by_hand")
+_STATE = ("method", "methods", "options", "caps", "targets", "_gait", "_by_hand")
 
 
 class _Settings(NamedTuple):

@@ -68,7 +68,7 @@ class Glass(widgets.VBox):  # type: ignore[misc]
         self.tick = anatomy(
             session.tree, session.theta[method], session.effectors, targets,
             session.methods[method], methods=session.methods,
-            mobility=session.gait.mobility(session.tree), **session.options,
+            mobility=session.gait.mobility(session.tree), **session.options_of(method),
         )  # fmt: skip
         self._turn_to(self.number)
 

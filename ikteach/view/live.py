@@ -101,7 +101,7 @@ class Live(widgets.VBox):  # type: ignore[misc]
         wounded = "wounded, " if session.gait.wound else ""
         return f"A human, {wounded}{motion} by {session.method}. From its target: {far}."
 
-    # Callbacks may come on another thread: they store, and the loop acts.
+    # Callbacks may come on another thread: they are handed over, and the loop's thread acts.
 
     def guarded(self, action: Callable[..., None]) -> Callable[..., None]:
         """`action`, with what goes wrong in it told to the person, once, and the session kept."""
@@ -116,7 +116,13 @@ class Live(widgets.VBox):  # type: ignore[misc]
             self._changes += 1
             self.wake()
 
-        return act
+        def hand_over(*arguments: Any) -> None:
+            if self._loop is None or self._loop.is_closed():
+                act(*arguments)
+            else:
+                self._loop.call_soon_threadsafe(act, *arguments)
+
+        return hand_over
 
     def tell(self, error: Exception) -> None:
         """Say what went wrong where the person looks."""

@@ -2,7 +2,7 @@
 
 import inspect
 from collections.abc import Callable, Mapping, Sequence
-from math import degrees, pi
+from math import degrees, log10, pi
 from typing import Any
 
 import ipywidgets as widgets
@@ -162,8 +162,6 @@ def slider(
     """A slider over its label's range."""
     layout = widgets.Layout(width="380px")
     if logarithmic:
-        from math import log10
-
         return widgets.FloatLogSlider(
             value=value, min=log10(low), max=log10(high), step=0.02, description=label,
             style=LABEL, layout=layout, readout_format=".3g",
@@ -218,7 +216,7 @@ def control_panel(session: Session) -> Panel:
 def view_panel(session: Session) -> Panel:
     """What is looked at, and from where."""
     layers = {
-        f"layer.{name}": widgets.Checkbox(description=name, indent=False)
+        f"layer.{name}": widgets.Checkbox(description=name, indent=False, layout={"width": "130px"})
         for name in (*LAYERS, "targets")
     }
     layers["layer.targets"].value = True

@@ -60,6 +60,10 @@ class Positions:
         inside = np.clip(np.asarray(position, dtype=float), self.low[index], self.high[index])
         self.move(index, inside, again=again)
 
+    def follow(self, positions: ArrayLike) -> None:
+        """Take over where the targets have gone by themselves, as far as they may."""
+        self._now[:] = np.clip(np.asarray(positions, dtype=float), self.low, self.high)
+
     def undo(self) -> int | None:
         """Take the last move back; the target that moved, or None if there is nothing left."""
         if not self._past:

@@ -2,10 +2,10 @@
 
 const STYLE = `
 .ikteach-targets { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-.ikteach-targets th { text-align: left; padding: 2px 10px 2px 2px; font-weight: normal; }
-.ikteach-targets td { padding: 2px 8px; white-space: nowrap; }
-.ikteach-targets input[type=range] { width: 7.5em; vertical-align: middle; }
-.ikteach-targets input[type=number] { width: 5.2em; }
+.ikteach-targets th { text-align: left; padding: 2px 6px 2px 2px; white-space: nowrap; font-weight: normal; }
+.ikteach-targets td { padding: 2px 5px; white-space: nowrap; }
+.ikteach-targets input[type=range] { width: 5.5em; vertical-align: middle; }
+.ikteach-targets input[type=number] { width: 4.6em; }
 .ikteach-targets input:focus-visible, .ikteach-undo:focus-visible { outline: 3px solid #56b4e9; }
 .ikteach-alert:not(:empty) { border-left: 4px solid #d55e00; padding: 4px 10px; margin: 4px 0; }`;
 

@@ -69,6 +69,11 @@ class Targets(anywidget.AnyWidget):
         """Move one target; ValueError with the range if it would leave it."""
         self._model.move(index, position)
 
+    def follow(self, positions: ArrayLike) -> None:
+        """Show where the targets have gone by themselves; nobody is told, nothing is undone."""
+        self._model.follow(positions)
+        self.values = self._model.now.tolist()
+
     def undo(self) -> None:
         """Take the last move back."""
         if self.handles is not None:
