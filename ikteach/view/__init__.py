@@ -5,5 +5,6 @@ from ikteach.view.player import GaitPlayer
 from ikteach.view.posing import ColumnPoser, Poser
 from ikteach.view.scene import Scene
 from ikteach.view.still import StillScene
+from ikteach.view.workbench import Workbench
 
-__all__ = ["BendBench", "ColumnPoser", "GaitPlayer", "Poser", "Scene", "StillScene"]
+__all__ = ["BendBench", "ColumnPoser", "GaitPlayer", "Poser", "Scene", "StillScene", "Workbench"]

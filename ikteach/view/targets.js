@@ -3,9 +3,9 @@
 const STYLE = `
 .ikteach-targets { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 .ikteach-targets th { text-align: left; padding: 2px 6px 2px 2px; white-space: nowrap; font-weight: normal; }
-.ikteach-targets td { padding: 2px 5px; white-space: nowrap; }
-.ikteach-targets input[type=range] { width: 5.5em; vertical-align: middle; }
-.ikteach-targets input[type=number] { width: 4.6em; }
+.ikteach-targets td { padding: 2px 3px; white-space: nowrap; }
+.ikteach-targets input[type=range] { width: 4em; vertical-align: middle; }
+.ikteach-targets input[type=number] { width: 4.4em; }
 .ikteach-targets input:focus-visible, .ikteach-undo:focus-visible { outline: 3px solid #56b4e9; }
 .ikteach-alert:not(:empty) { border-left: 4px solid #d55e00; padding: 4px 10px; margin: 4px 0; }`;
 

@@ -78,7 +78,7 @@ class Workbench(Live):
             [*(panel.widget for panel in made), widgets.VBox([self.recorder, self.saving.widget])],
             titles=[*self.panels, "Recording"],
             selected_index=0,
-            layout={"flex": "1 1 520px", "max_width": "640px", "min_width": "0"},
+            layout={"flex": "1 1 430px", "max_width": "640px", "min_width": "0"},
         )
         self._stage = widgets.VBox([self.bar.widget, self.scene.widget])
         self._fit()
