@@ -28,6 +28,7 @@ class Glass(widgets.VBox):  # type: ignore[misc]
         self.session, self._stop, self._show = session, stop, show
         self.names = Names(session.effectors.names, session.tree.names)
         self.tick: Anatomy | None = None
+        self._pages: dict[int, Page] = {}  # of this tick, drawn when they are first opened
         self.number = 0
         try:
             self._loop: asyncio.AbstractEventLoop | None = asyncio.get_running_loop()
@@ -70,6 +71,7 @@ class Glass(widgets.VBox):  # type: ignore[misc]
             session.methods[method], methods=session.methods,
             mobility=session.gait.mobility(session.tree), **session.options,
         )  # fmt: skip
+        self._pages.clear()
         self._turn_to(self.number)
 
     def advance(self) -> None:
@@ -88,7 +90,9 @@ class Glass(widgets.VBox):  # type: ignore[misc]
         """The page that is open; LookupError before the first look."""
         if self.tick is None:
             raise LookupError("nothing is under the glass yet: look first")
-        return PAGES[self.number](self.tick, self.names)
+        if self.number not in self._pages:
+            self._pages[self.number] = PAGES[self.number](self.tick, self.names)
+        return self._pages[self.number]
 
     def close(self) -> None:
         """Free the widgets."""
