@@ -12,6 +12,11 @@ from ikteach.view.glass_pages import PAGES, Names, Page
 from ikteach.view.picture import Picture
 from ikteach.view.status import Status
 
+STYLE = (
+    "<style>.ikteach-glass td, .ikteach-glass th"
+    "{padding:1px 10px;text-align:right;line-height:1.5}</style>"
+)
+
 
 class Glass(widgets.VBox):  # type: ignore[misc]
     """The next tick of a session, taken apart: e, J, U Σ Vᵀ, each method's share, Δθ, movement.
@@ -116,9 +121,9 @@ class Glass(widgets.VBox):  # type: ignore[misc]
         with self.picture.hold_sync():
             self.picture.png, self.picture.alt = page.png, page.alt
         self.table.value = (
-            "<details><summary>The numbers as a table</summary>"
+            f"{STYLE}<details><summary>The numbers as a table</summary>"
             '<div style="overflow:auto;max-height:300px">'
-            + page.table.to_html(float_format="{:.4g}".format, border=0, classes="ikteach-table")
+            + page.table.to_html(float_format="{:.4f}".format, border=0, classes="ikteach-glass")
             + "</div></details>"
         )
         self.status.say(

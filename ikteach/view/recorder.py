@@ -3,7 +3,7 @@
 import asyncio
 from collections.abc import AsyncIterator
 from concurrent.futures import ThreadPoolExecutor
-from math import ceil, isfinite
+from math import ceil, inf, isfinite
 from pathlib import Path
 from time import monotonic
 from typing import Any, ClassVar
@@ -73,7 +73,8 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
             one.layout = narrow
         super().__init__(
             [
-                widgets.HBox([self.name, self.kind], layout={"flex_flow": "row wrap"}),
+                self.name,
+                widgets.HBox([self.kind]),
                 widgets.HBox([self.width, self.height]),
                 widgets.HBox([self.rate, self.seconds]),
                 widgets.HBox([self.which, self.side]),
@@ -120,9 +121,8 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
         if getattr(self, "comm", None) is None:
             return
         for box in self.children:
-            for one in getattr(box, "children", ()):
+            for one in (*getattr(box, "children", ()), box):
                 one.close()
-            box.close()
         super().close()
 
     def _ask(self, action: Any) -> None:
@@ -134,6 +134,7 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
 
     async def _record(self) -> None:
         self.start.disabled, self.stop.disabled = True, False
+        self.progress.value = 0
         try:
             path, frames = await self._film()
         except Stopped:
@@ -160,7 +161,7 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
             raise FileExistsError(
                 f"there is a file {str(path)!r} already; tick the box to replace it"
             ) from None
-        seconds, most = self.seconds.value, session.dt * (session.record.maxlen or 1)
+        seconds, most = self.seconds.value, session.dt * (session.record.maxlen or inf)
         if not (isfinite(seconds) and 0 < seconds <= most):
             raise ValueError(f"the seconds must be more than 0 and at most {most:g}, not {seconds}")
         begin, past = session.ticks * session.dt, self.which.value == PAST

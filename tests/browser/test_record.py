@@ -220,7 +220,7 @@ def test_the_glass_is_leafed_through(book: Notebook) -> None:
     shown.wait_for(timeout=READY)
     assert (np.ptp(pixels(shown.screenshot()), axis=-1) > 40).mean() > 0.005
     book.page.get_by_text("The numbers as a table").click()
-    table = book.page.locator("table.ikteach-table")
+    table = book.page.locator("table.ikteach-glass")
     assert table.locator("tbody tr").count() == 20
     book.shot("09_glass_table")
     assert book.kernel("session.ticks") == ticks
