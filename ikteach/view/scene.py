@@ -9,9 +9,10 @@ import pythreejs as three
 
 from ikteach.arrays import Array
 from ikteach.body import Effectors, Frames, Tree, forward, locate
-from ikteach.body.rotation import quaternion_from_y, sticks, transforms
+from ikteach.body.rotation import sticks, transforms
 from ikteach.view.driver import Driver, rows
-from ikteach.view.skin import EFFECTOR_COLOURS, GREY, Ball, Limb, Part, skin_of
+from ikteach.view.flesh import mesh
+from ikteach.view.skin import EFFECTOR_COLOURS, GREY, skin_of
 
 STILL = np.eye(3, 4)
 CAMERAS = {  # where from, seen from the pelvis
@@ -41,10 +42,11 @@ class Scene:
             for i, name in enumerate(effectors.names)
         ]
         self._gaps = [_node(_rod()) for _ in effectors.names]
-        by_name = dict(zip(tree.names, self._joints, strict=True))
-        for part in skin_of(tree, effectors):
-            holder = self._ground if part.joint is None else by_name[part.joint]
-            holder.children = [*holder.children, *_solid(part)]
+        holders: dict[str | None, three.Group] = dict(zip(tree.names, self._joints, strict=True))
+        holders[None] = self._ground
+        parts = skin_of(tree, effectors)
+        for joint in dict.fromkeys(part.joint for part in parts):
+            holders[joint].children = [mesh([part for part in parts if part.joint == joint])]
         self._floor.children = [_grid()]
         nodes = [self._ground, self._floor, *self._joints, *self._targets, *self._gaps]
 
@@ -108,30 +110,6 @@ def _lights() -> list[three.Light]:
 def _node(children: Sequence[Any] = ()) -> three.Group:
     """Something that the driver moves: its matrix is given, not made from position and so on."""
     return three.Group(children=list(children), matrixAutoUpdate=False)
-
-
-def _solid(part: Part) -> list[three.Mesh]:
-    material = three.MeshLambertMaterial(color=part.colour)
-    if isinstance(part, Ball):
-        ball = three.SphereBufferGeometry(1, 20, 14)
-        return [three.Mesh(ball, material, position=list(part.centre), scale=list(part.radii))]
-    return _limb(part, material)
-
-
-def _limb(part: Limb, material: three.Material) -> list[three.Mesh]:
-    start, end = np.asarray(part.start, dtype=float), np.asarray(part.end, dtype=float)
-    rod = three.CylinderBufferGeometry(
-        part.thin, part.thick, float(np.linalg.norm(end - start)), 16, 1, True
-    )
-    middle = three.Mesh(
-        rod, material,
-        position=((start + end) / 2).tolist(), quaternion=quaternion_from_y(end - start),
-    )  # fmt: skip
-    tips = [
-        three.Mesh(three.SphereBufferGeometry(radius, 16, 12), material, position=at.tolist())
-        for at, radius in ((start, part.thick), (end, part.thin))
-    ]
-    return [middle, *tips]
 
 
 def _target(name: str, colour: str) -> list[three.Mesh]:
