@@ -146,7 +146,8 @@ class Replay(widgets.VBox):  # type: ignore[misc]
                 f"tick {tick}, {at:.2f} s" for tick, at in zip(run.tick, run.clock, strict=True)
             ]
         with self.rows.hold_sync():
-            self.rows.header = ["tick", "clock [s]", "method", *run.effectors.names, "what changed"]
+            far = [f"{name} [cm]" for name in run.effectors.names]
+            self.rows.header = ["tick", "clock [s]", "method", *far, "what changed"]
             self.rows.rows = _table(run, columns, error)
         self._draw()
         self._agree()
