@@ -176,6 +176,7 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
             finer=2 if max(asked["size"]) <= 1000 else 1,
         )  # fmt: skip
         self.progress.max, self.progress.value = frames, 0
+        self.status.say(f"Recording: 0 of {frames} frames.")
         done, told = 0, monotonic()
         with movie.writing(path, **asked) as add, ThreadPoolExecutor(1, "ikteach-movie") as pool:
             async for one in self._shots(begin, frames, rate, past):
