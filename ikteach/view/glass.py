@@ -1,13 +1,12 @@
 """One iteration under a glass: the clock stops, and the next tick is shown in pages."""
 
-import asyncio
 from collections.abc import Callable
-from typing import Any
 
 import ipywidgets as widgets
 
 from ikteach.motion.anatomy import Anatomy, anatomy
 from ikteach.motion.session import Session
+from ikteach.view.acting import Actor
 from ikteach.view.glass_pages import PAGES, Names, Page
 from ikteach.view.picture import Picture
 from ikteach.view.status import Status
@@ -35,10 +34,7 @@ class Glass(widgets.VBox):  # type: ignore[misc]
         self.tick: Anatomy | None = None
         self._pages: dict[int, Page] = {}  # of this tick, drawn when they are first opened
         self.number = 0
-        try:
-            self._loop: asyncio.AbstractEventLoop | None = asyncio.get_running_loop()
-        except RuntimeError:
-            self._loop = None
+        self._act = Actor()
         self.look_button = widgets.Button(
             description="Stop the clock and look", button_style="primary", layout={"width": "200px"}
         )
@@ -53,8 +49,8 @@ class Glass(widgets.VBox):  # type: ignore[misc]
             (self.look_button, self.look), (self.do, self.advance),
             (self.back, lambda: self.turn(-1)), (self.next, lambda: self.turn(1)),
         ):  # fmt: skip
-            button.on_click(lambda _, action=action: self._call(action))
-        self.method.observe(lambda _: self._call(self._again), "value")
+            button.on_click(lambda _, action=action: self._act(action, self.status.fail))
+        self.method.observe(lambda _: self._act(self._again, self.status.fail), "value")
         super().__init__(
             [
                 widgets.HBox([self.look_button, self.method, self.do]),
@@ -130,17 +126,3 @@ class Glass(widgets.VBox):  # type: ignore[misc]
             f"Page {self.number + 1} of {len(PAGES)}: {page.title}. Tick "
             f"{self.session.ticks + 1} by {self.method.value}. {page.text}"
         )
-
-    # Callbacks may come on another thread: the loop acts.
-
-    def _call(self, action: Callable[[], Any]) -> None:
-        def act() -> None:
-            try:
-                action()
-            except Exception as error:  # told to the person, and the session goes on
-                self.status.fail(f"That did not work: {error}")
-
-        if self._loop is None or self._loop.is_closed():
-            act()
-        else:
-            self._loop.call_soon_threadsafe(act)

@@ -1,6 +1,5 @@
 """A panel that saves a session to files and opens saved ones for replay."""
 
-import asyncio
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,6 +8,7 @@ import ipywidgets as widgets
 from ikteach.formats.session import load, save
 from ikteach.motion.log import Log
 from ikteach.motion.session import Session
+from ikteach.view.acting import Actor
 from ikteach.view.replay import Replay
 from ikteach.view.status import Status
 
@@ -26,10 +26,7 @@ class Keeper(widgets.VBox):  # type: ignore[misc]
     ) -> None:  # fmt: skip
         self.session, self.folder = session, Path(folder)
         self._open_run = open_run or self._replay
-        try:
-            self._loop: asyncio.AbstractEventLoop | None = asyncio.get_running_loop()
-        except RuntimeError:
-            self._loop = None
+        self._act = Actor()
         self.name = widgets.Text(value="session", description="File name")
         self.replace = widgets.Checkbox(
             value=False, description="replace files of that name", indent=False
@@ -37,8 +34,8 @@ class Keeper(widgets.VBox):  # type: ignore[misc]
         self.saving = widgets.Button(description="Save the session")
         self.opening = widgets.Button(description="Open and replay")
         self.status, self.place = Status(), widgets.VBox()
-        self.saving.on_click(lambda _: self._call(self._save))
-        self.opening.on_click(lambda _: self._call(self._open))
+        self.saving.on_click(lambda _: self._act(self._save, self.status.fail))
+        self.opening.on_click(lambda _: self._act(self._open, self.status.fail))
         buttons = widgets.HBox([self.saving, self.opening])
         super().__init__([self.name, self.replace, buttons, self.status, self.place])
 
@@ -75,17 +72,3 @@ class Keeper(widgets.VBox):  # type: ignore[misc]
         for old in self.place.children:
             old.close()
         self.place.children = [replay]
-
-    def _call(self, action: Callable[[], None]) -> None:
-        """Have the loop do it, for a click may come on another thread; say what goes wrong."""
-
-        def act() -> None:
-            try:
-                action()
-            except Exception as error:  # told to the person, and the session goes on
-                self.status.fail(f"That did not work: {error}.")
-
-        if self._loop is None or self._loop.is_closed():
-            act()
-        else:
-            self._loop.call_soon_threadsafe(act)

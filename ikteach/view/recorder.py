@@ -6,12 +6,13 @@ from concurrent.futures import ThreadPoolExecutor
 from math import ceil, inf, isfinite
 from pathlib import Path
 from time import monotonic
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import ipywidgets as widgets
 
 from ikteach.formats import movie
 from ikteach.motion.session import Session
+from ikteach.view.acting import Actor
 from ikteach.view.filming import Film, Shot, shot
 from ikteach.view.scene import CAMERAS
 from ikteach.view.status import Status
@@ -42,10 +43,7 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
         self.session, self.folder, self._slot = session, Path(folder), slot
         self._task: asyncio.Task[None] | None = None
         self._stop = False
-        try:
-            self._loop: asyncio.AbstractEventLoop | None = asyncio.get_running_loop()
-        except RuntimeError:
-            self._loop = None
+        self._act = Actor()
         self.name = widgets.Text(value="walk", description="File name", style=LABEL)
         self.kind = widgets.ToggleButtons(
             options=[(ending[1:].upper(), ending) for ending in movie.KINDS], description="Format",
@@ -66,7 +64,7 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
             value=0, max=1, description="Movie", style={"bar_color": "#0072b2", **LABEL}
         )
         self.status = Status()
-        self.start.on_click(lambda _: self._ask(self.begin))
+        self.start.on_click(lambda _: self._act(self.begin))
         self.stop.on_click(lambda _: self.halt())
         narrow = widgets.Layout(width="210px")
         for one in (self.width, self.height, self.rate, self.seconds, self.which, self.side):
@@ -100,14 +98,14 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
 
     def begin(self) -> None:
         """Start the movie; what cannot be is said in the panel."""
-        if self._loop is None:
+        if self._act.loop is None:
             self.status.fail(
                 "A movie is made in the background of a notebook, and none runs here. "
                 "ikteach.view.filming.film and ikteach.formats.movie.write make one at once."
             )
         elif self._task is None or self._task.done():
             self._stop = False
-            self._task = self._loop.create_task(self._record())
+            self._task = self._act.loop.create_task(self._record())
 
     def halt(self) -> None:
         """Stop: there will be no file."""
@@ -124,13 +122,6 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
             for one in (*getattr(box, "children", ()), box):
                 one.close()
         super().close()
-
-    def _ask(self, action: Any) -> None:
-        """Have the loop do it: a click may come on another thread."""
-        if self._loop is None:
-            action()
-        else:
-            self._loop.call_soon_threadsafe(action)
 
     async def _record(self) -> None:
         self.start.disabled, self.stop.disabled = True, False
