@@ -18,6 +18,7 @@ CELLS = [
     """import asyncio
 from ikteach.motion.session import Session
 from ikteach.view.glass import Glass
+from ikteach.view.keeping import Keeper
 from ikteach.view.recorder import Recorder
 from ikteach.view.replay import Replay
 session = Session(max_step=0.1)
@@ -30,6 +31,7 @@ recorder = Recorder(session)
 recorder""",
     "replay = Replay(session.log(last=60))\nreplay",
     "glass = Glass(session, stop=walking.cancel)\nglass",
+    "keeper = Keeper(session)\nkeeper",
 ]
 SAID = ".ikteach-status [role=status]"
 ALERT = ".ikteach-status [role=alert]"
@@ -226,3 +228,17 @@ def test_the_glass_is_leafed_through(book: Notebook) -> None:
     assert book.kernel("session.ticks") == ticks
     press(book, "Do this tick")
     settle(book, "session.ticks", ticks + 1)
+
+
+def test_a_session_is_saved_and_opened(book: Notebook, lab: Lab) -> None:
+    book.run_cell("keeper = Keeper")
+    press(book, "Save the session")
+    said = wait_for(book, SAID, "are saved in")
+    assert {"session.json", "session.csv"} <= set(os.listdir(lab.folder))
+    assert said.startswith(f"{book.kernel('len(session.record)')} ticks")
+    press(book, "Open and replay")
+    wait_for(book, SAID, "are open")
+    last = book.kernel("len(session.record)") - 1
+    book.page.locator(f".ikteach-rows tr[data-row='{last}']").last.click()
+    settle(book, "keeper.place.children[0].at", last)
+    book.shot("09_opened")
