@@ -16,14 +16,24 @@ from ikteach.body import forward, jacobian, locate
 from ikteach.body.jacobian import cross
 from ikteach.body.tree import Plan, skew
 from ikteach.motion import gait, per_chain, reachable, step, track, whole
+from ikteach.motion.anatomy import Anatomy, Directions, anatomy, response
+from ikteach.motion.log import Log
+from ikteach.motion.mix import Mix
 from ikteach.motion.reachable import nearest
+from ikteach.motion.session import Session
 from ikteach.motion.step import clamp_error
 from ikteach.solvers import adjugate, cramer, determinant, ellipsoid, independence, sdls
 from ikteach.solvers.sdls import hard, lengths, soft
 
 TREE, EFFECTORS = figures.human()
-SIZES = {"n": 20, "k": 4, "m": 12, "3k": 12, "3": 3, "T": 5, "r": 12}
+SIZES = {"n": 20, "k": 4, "m": 12, "M": 4, "3k": 12, "3": 3, "T": 5, "r": 12}
 BATCHES = [(), (3,), (2, 3), (0,)]
+
+MIX = Mix.of(EFFECTORS, dict.fromkeys(EFFECTORS.names, "dls"))
+ONE = anatomy(TREE, TREE.rest, EFFECTORS, gait.walking(0.1), "dls")
+WALKED = Session()
+for _ in range(5):
+    WALKED.tick()
 
 
 def shape_of(promise, batch):
@@ -71,6 +81,8 @@ PROMISES = [  # function, its promise, how to run it
     (gait.Gait.at, "(..., 4, 3)", lambda g: gait.walking.at(g.T)),
     (gait.Gait.advance, "(..., 3)", lambda g: gait.walking.advance(g.T)),
     (gait.Gait.mobility, "(n,)", lambda g: gait.walking.mobility(TREE)),
+    (Mix.__call__, "(..., n)", lambda g: MIX(g.J, g.e)),
+    (response, "(r,)", lambda g: response("sdls", ONE.J, ONE.e)),
     (motion.growing_clamp, "(..., k)", lambda g: motion.growing_clamp(g.e, np.ones((*g.batch, 4)))),
     (EFFECTORS.__class__.mask.func, "(k, 1, n)", lambda g: EFFECTORS.mask),
 ]
@@ -89,6 +101,9 @@ RECORDS = [  # a record, its promises by field, how to make one
     (solvers.Ellipsoid, lambda g: ellipsoid(g.J)),
     (Step, lambda g: step(TREE, g.theta, EFFECTORS, g.targets, "dls", max_step=0.1)),
     (Track, lambda g: track(TREE, EFFECTORS, g.walk, sdls, theta=g.theta)),
+    (Log, lambda g: WALKED.log()),
+    (Directions, lambda g: Directions.of(ONE.J, ONE.e)),
+    (Anatomy, lambda g: ONE),
     (Tree, lambda g: TREE),
     (Effectors, lambda g: EFFECTORS),
     (Plan, lambda g: TREE.plan),

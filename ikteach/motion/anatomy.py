@@ -18,14 +18,17 @@ from ikteach.arrays import Array, ArrayLike, Mask
 from ikteach.body import Effectors, Tree, forward, locate
 from ikteach.motion.step import clamp_error, solver_of, step, whole
 from ikteach.solvers import SOLVERS, Solver, dls, name_of, pseudoinverse, sdls, transpose
-from ikteach.solvers.dls import ROUNDING
+from ikteach.solvers.dls import TINY
 from ikteach.solvers.sdls import SMALLEST, hard, lengths
 
 
 class Directions(NamedTuple):
     """J = U diag(σ) Vᵀ, and how much of the error lies along each direction; r = min(3k, n).
 
-    U (3k, r), sigma (r,) [m/rad], Vt (r, n), alpha = Uᵀe (r,) [m]
+    U      (3k, r)  directions of the error, in columns
+    sigma  (r,)     singular values, largest first [m/rad]
+    Vt     (r, n)   turns of the joints, in rows
+    alpha  (r,)     Uᵀe, the error along each direction [m]
     """
 
     U: Array
@@ -56,9 +59,8 @@ def respond_pseudoinverse(d: Directions, *, cutoff: float = 0.01) -> Array:
 
 
 def respond_dls(d: Directions, *, damping: float = 0.1) -> Array:
-    """f_i = σ_i / (σ_i² + λ²)."""
-    lambda2 = max(damping**2, ROUNDING * float(np.sum(d.sigma**2)) + 1e-200)
-    return d.sigma / (d.sigma**2 + lambda2)
+    """f_i = σ_i / (σ_i² + λ²). A λ that is lost in rounding is left to `dls` to raise."""
+    return d.sigma / (d.sigma**2 + damping**2 + TINY)
 
 
 def respond_sdls(
@@ -115,7 +117,10 @@ class Anatomy(NamedTuple):
     e          (3k,)      the error, shortened by max_error if there is one [m]
     J          (3k, n)    what the solver is given: each column times its joint's mobility [m/rad]
     mobility   (n,)       s, so that wanted = s ∘ Σ f_i α_i v_i
-    U, sigma, Vt, alpha   its singular directions, and the error along them (`Directions`)
+    U          (3k, r)    its singular directions, as in `Directions`
+    sigma      (r,)       singular values [m/rad]
+    Vt         (r, n)
+    alpha      (r,)       the error along each direction [m]
     responses  {name: (r,)}  f of each of `methods` [rad/m]; the solver's own among them
     wanted     (n,)       Δθ that the solver asks for [rad]
     capped     (n,)       after the cap [rad]

@@ -69,7 +69,7 @@ class Tick(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Log:
-    """A finished run of T ticks, by several methods on the same targets.
+    """A finished run of T ticks, by M methods on the same targets.
 
     tree, effectors  the figure
     dt               clock time of one tick [s]
@@ -81,10 +81,10 @@ class Log:
     floor    (T,)       height of the ground under the pelvis [m]
     shown    (T,)       the method that was shown, as its place in `methods`
     targets  (T, k, 3)  [m]
-    theta    (T, m, n)  the pose by each method [rad]
-    error    (T, m, k)  distance to target [m]
-    capped   (T, m)     whether the cap shortened the step
-    held     (T, m, n)  whether a limit stopped the joint
+    theta    (T, M, n)  the pose by each method [rad]
+    error    (T, M, k)  distance to target [m]
+    capped   (T, M)     whether the cap shortened the step
+    held     (T, M, n)  whether a limit stopped the joint
     events           what was changed, in order
     settings         how the session stood at the end: plain words and numbers, by name
     dropped          how many ticks and events came before these and were not kept

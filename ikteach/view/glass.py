@@ -1,16 +1,20 @@
 """One iteration under a glass: the clock stops, and the next tick is shown in pages."""
 
-import asyncio
 from collections.abc import Callable
-from typing import Any
 
 import ipywidgets as widgets
 
 from ikteach.motion.anatomy import Anatomy, anatomy
 from ikteach.motion.session import Session
+from ikteach.view.acting import Actor
 from ikteach.view.glass_pages import PAGES, Names, Page
 from ikteach.view.picture import Picture
 from ikteach.view.status import Status
+
+STYLE = (
+    "<style>.ikteach-glass td, .ikteach-glass th"
+    "{padding:1px 10px;text-align:right;line-height:1.5}</style>"
+)
 
 
 class Glass(widgets.VBox):  # type: ignore[misc]
@@ -28,11 +32,9 @@ class Glass(widgets.VBox):  # type: ignore[misc]
         self.session, self._stop, self._show = session, stop, show
         self.names = Names(session.effectors.names, session.tree.names)
         self.tick: Anatomy | None = None
+        self._pages: dict[int, Page] = {}  # of this tick, drawn when they are first opened
         self.number = 0
-        try:
-            self._loop: asyncio.AbstractEventLoop | None = asyncio.get_running_loop()
-        except RuntimeError:
-            self._loop = None
+        self._act = Actor()
         self.look_button = widgets.Button(
             description="Stop the clock and look", button_style="primary", layout={"width": "200px"}
         )
@@ -47,8 +49,8 @@ class Glass(widgets.VBox):  # type: ignore[misc]
             (self.look_button, self.look), (self.do, self.advance),
             (self.back, lambda: self.turn(-1)), (self.next, lambda: self.turn(1)),
         ):  # fmt: skip
-            button.on_click(lambda _, action=action: self._call(action))
-        self.method.observe(lambda _: self._call(self._again), "value")
+            button.on_click(lambda _, action=action: self._act(action, self.status.fail))
+        self.method.observe(lambda _: self._act(self._again, self.status.fail), "value")
         super().__init__(
             [
                 widgets.HBox([self.look_button, self.method, self.do]),
@@ -70,6 +72,7 @@ class Glass(widgets.VBox):  # type: ignore[misc]
             session.methods[method], methods=session.methods,
             mobility=session.gait.mobility(session.tree), **session.options_of(method),
         )  # fmt: skip
+        self._pages.clear()
         self._turn_to(self.number)
 
     def advance(self) -> None:
@@ -88,7 +91,9 @@ class Glass(widgets.VBox):  # type: ignore[misc]
         """The page that is open; LookupError before the first look."""
         if self.tick is None:
             raise LookupError("nothing is under the glass yet: look first")
-        return PAGES[self.number](self.tick, self.names)
+        if self.number not in self._pages:
+            self._pages[self.number] = PAGES[self.number](self.tick, self.names)
+        return self._pages[self.number]
 
     def close(self) -> None:
         """Free the widgets."""
@@ -112,26 +117,12 @@ class Glass(widgets.VBox):  # type: ignore[misc]
         with self.picture.hold_sync():
             self.picture.png, self.picture.alt = page.png, page.alt
         self.table.value = (
-            "<details><summary>The numbers as a table</summary>"
+            f"{STYLE}<details><summary>The numbers as a table</summary>"
             '<div style="overflow:auto;max-height:300px">'
-            + page.table.to_html(float_format="{:.4g}".format, border=0, classes="ikteach-table")
+            + page.table.to_html(float_format="{:.4f}".format, border=0, classes="ikteach-glass")
             + "</div></details>"
         )
         self.status.say(
             f"Page {self.number + 1} of {len(PAGES)}: {page.title}. Tick "
             f"{self.session.ticks + 1} by {self.method.value}. {page.text}"
         )
-
-    # Callbacks may come on another thread: the loop acts.
-
-    def _call(self, action: Callable[[], Any]) -> None:
-        def act() -> None:
-            try:
-                action()
-            except Exception as error:  # told to the person, and the session goes on
-                self.status.fail(f"That did not work: {error}")
-
-        if self._loop is None or self._loop.is_closed():
-            act()
-        else:
-            self._loop.call_soon_threadsafe(act)

@@ -3,15 +3,16 @@
 import asyncio
 from collections.abc import AsyncIterator
 from concurrent.futures import ThreadPoolExecutor
-from math import ceil, isfinite
+from math import ceil, inf, isfinite
 from pathlib import Path
 from time import monotonic
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import ipywidgets as widgets
 
 from ikteach.formats import movie
 from ikteach.motion.session import Session
+from ikteach.view.acting import Actor
 from ikteach.view.filming import Film, Shot, shot
 from ikteach.view.scene import CAMERAS
 from ikteach.view.status import Status
@@ -42,10 +43,7 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
         self.session, self.folder, self._slot = session, Path(folder), slot
         self._task: asyncio.Task[None] | None = None
         self._stop = False
-        try:
-            self._loop: asyncio.AbstractEventLoop | None = asyncio.get_running_loop()
-        except RuntimeError:
-            self._loop = None
+        self._act = Actor()
         self.name = widgets.Text(value="walk", description="File name", style=LABEL)
         self.kind = widgets.ToggleButtons(
             options=[(ending[1:].upper(), ending) for ending in movie.KINDS], description="Format",
@@ -66,14 +64,15 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
             value=0, max=1, description="Movie", style={"bar_color": "#0072b2", **LABEL}
         )
         self.status = Status()
-        self.start.on_click(lambda _: self._ask(self.begin))
+        self.start.on_click(lambda _: self._act(self.begin))
         self.stop.on_click(lambda _: self.halt())
         narrow = widgets.Layout(width="210px")
         for one in (self.width, self.height, self.rate, self.seconds, self.which, self.side):
             one.layout = narrow
         super().__init__(
             [
-                widgets.HBox([self.name, self.kind], layout={"flex_flow": "row wrap"}),
+                self.name,
+                widgets.HBox([self.kind]),
                 widgets.HBox([self.width, self.height]),
                 widgets.HBox([self.rate, self.seconds]),
                 widgets.HBox([self.which, self.side]),
@@ -99,14 +98,14 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
 
     def begin(self) -> None:
         """Start the movie; what cannot be is said in the panel."""
-        if self._loop is None:
+        if self._act.loop is None:
             self.status.fail(
                 "A movie is made in the background of a notebook, and none runs here. "
                 "ikteach.view.filming.film and ikteach.formats.movie.write make one at once."
             )
         elif self._task is None or self._task.done():
             self._stop = False
-            self._task = self._loop.create_task(self._record())
+            self._task = self._act.loop.create_task(self._record())
 
     def halt(self) -> None:
         """Stop: there will be no file."""
@@ -120,20 +119,13 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
         if getattr(self, "comm", None) is None:
             return
         for box in self.children:
-            for one in getattr(box, "children", ()):
+            for one in (*getattr(box, "children", ()), box):
                 one.close()
-            box.close()
         super().close()
-
-    def _ask(self, action: Any) -> None:
-        """Have the loop do it: a click may come on another thread."""
-        if self._loop is None:
-            action()
-        else:
-            self._loop.call_soon_threadsafe(action)
 
     async def _record(self) -> None:
         self.start.disabled, self.stop.disabled = True, False
+        self.progress.value = 0
         try:
             path, frames = await self._film()
         except Stopped:
@@ -160,7 +152,7 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
             raise FileExistsError(
                 f"there is a file {str(path)!r} already; tick the box to replace it"
             ) from None
-        seconds, most = self.seconds.value, session.dt * (session.record.maxlen or 1)
+        seconds, most = self.seconds.value, session.dt * (session.record.maxlen or inf)
         if not (isfinite(seconds) and 0 < seconds <= most):
             raise ValueError(f"the seconds must be more than 0 and at most {most:g}, not {seconds}")
         begin, past = session.ticks * session.dt, self.which.value == PAST
@@ -175,6 +167,7 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
             finer=2 if max(asked["size"]) <= 1000 else 1,
         )  # fmt: skip
         self.progress.max, self.progress.value = frames, 0
+        self.status.say(f"Recording: 0 of {frames} frames.")
         done, told = 0, monotonic()
         with movie.writing(path, **asked) as add, ThreadPoolExecutor(1, "ikteach-movie") as pool:
             async for one in self._shots(begin, frames, rate, past):

@@ -2,7 +2,7 @@
 
 import asyncio
 import io
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from time import monotonic
 from typing import Any, Protocol
 
@@ -15,6 +15,7 @@ from PIL import Image
 from ikteach.arrays import Array, Index
 from ikteach.body import Effectors, Tree
 from ikteach.motion.log import Log
+from ikteach.view.acting import Actor
 from ikteach.view.filming import Film, Shot
 from ikteach.view.picture import Picture
 from ikteach.view.plots import LEAST, STYLES
@@ -69,10 +70,7 @@ class Replay(widgets.VBox):  # type: ignore[misc]
         self.scene: Any = self._sketch or scene
         self._wanted = 0
         self._task: asyncio.Task[None] | None = None
-        try:
-            self._loop: asyncio.AbstractEventLoop | None = asyncio.get_running_loop()
-        except RuntimeError:
-            self._loop = None
+        self._act = Actor()
         wide = widgets.Layout(width="100%", max_width="720px")
         self.playing = widgets.ToggleButton(value=False, description="Play")
         self.slider = widgets.IntSlider(
@@ -84,8 +82,8 @@ class Replay(widgets.VBox):  # type: ignore[misc]
         self.slider.observe(lambda change: self.go(change["new"]), "value")
         self.curve.observe(lambda change: self.go(change["new"]), "chosen")
         self.rows.observe(lambda change: self.go(change["new"]), "chosen")
-        self.playing.observe(lambda _: self._call(self._toggle), "value")
-        self.method.observe(lambda _: self._call(self._method_changed), "value")
+        self.playing.observe(lambda _: self._act(self._toggle), "value")
+        self.method.observe(lambda _: self._act(self._method_changed), "value")
         pictures = [] if self._sketch is None else [self._sketch.widget]
         super().__init__(
             [
@@ -105,7 +103,7 @@ class Replay(widgets.VBox):  # type: ignore[misc]
             raise IndexError(f"the log has rows 0 to {len(self.run) - 1}, not {tick}")
         if tick != self.at or tick != self._wanted:
             self._wanted = tick
-            self._call(self._arrive)
+            self._act(self._arrive)
 
     def close(self) -> None:
         """Stop playing, and free the widgets."""
@@ -116,14 +114,6 @@ class Replay(widgets.VBox):  # type: ignore[misc]
         for one in (self.playing, self.slider, *self.children):
             one.close()
         super().close()
-
-    # Callbacks may come on another thread: they store, and the loop acts.
-
-    def _call(self, action: Callable[[], None]) -> None:
-        if self._loop is None or self._loop.is_closed():
-            action()
-        else:
-            self._loop.call_soon_threadsafe(action)
 
     def _arrive(self) -> None:
         if self.at != self._wanted:
@@ -146,7 +136,8 @@ class Replay(widgets.VBox):  # type: ignore[misc]
                 f"tick {tick}, {at:.2f} s" for tick, at in zip(run.tick, run.clock, strict=True)
             ]
         with self.rows.hold_sync():
-            self.rows.header = ["tick", "clock [s]", "method", *run.effectors.names, "what changed"]
+            far = [f"{name} [cm]" for name in run.effectors.names]
+            self.rows.header = ["tick", "clock [s]", "method", *far, "what changed"]
             self.rows.rows = _table(run, columns, error)
         self._draw()
         self._agree()
@@ -155,10 +146,10 @@ class Replay(widgets.VBox):  # type: ignore[misc]
         self.playing.description = "Pause" if self.playing.value else "Play"
         if not self.playing.value:
             self._agree()
-        elif self._loop is None:
+        elif self._act.loop is None:
             self.words.fail("It plays in a notebook only; the slider moves it everywhere.")
         elif self._task is None or self._task.done():
-            self._task = self._loop.create_task(self._play())
+            self._task = self._act.loop.create_task(self._play())
 
     async def _play(self) -> None:
         run, told = self.run, monotonic()

@@ -26,7 +26,7 @@ function render({ model, el }) {
   function fill() {
     const table = document.createElement("table"), head = document.createElement("tr");
     table.setAttribute("role", "grid");
-    table.setAttribute("aria-label", "ticks of the run; distances in cm");
+    table.setAttribute("aria-label", "ticks of the run");
     table.style.cssText = "border-collapse:collapse;font-variant-numeric:tabular-nums";
     for (const name of model.get("header")) {
       const th = cell("th", name, "position:sticky;top:0;padding:3px 10px;text-align:right;" +
@@ -37,6 +37,7 @@ function render({ model, el }) {
     rows = model.get("rows").map((words, i) => {
       const tr = document.createElement("tr");
       for (const text of words) tr.append(cell("td", text, "padding:2px 10px;text-align:right"));
+      tr.lastElementChild.style.textAlign = "left"; // remarks; the others are numbers
       tr.tabIndex = -1;
       tr.dataset.row = i;
       tr.dataset.lmSuppressShortcuts = "true"; // or the notebook takes the arrow keys
