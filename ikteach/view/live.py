@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 import ipywidgets as widgets
 
 from ikteach.motion.session import Session
+from ikteach.view.acting import Actor
 from ikteach.view.plots import portrait
 from ikteach.view.scene import Scene
 from ikteach.view.status import Status
@@ -38,10 +39,7 @@ class Live(widgets.VBox):  # type: ignore[misc]
         self.strips = Strips(session)
         self._changes = 0
         self._task: asyncio.Task[None] | None = None
-        try:
-            self._loop: asyncio.AbstractEventLoop | None = asyncio.get_running_loop()
-        except RuntimeError:  # no notebook: nothing moves by itself, but `session.tick()` does
-            self._loop = None
+        self._act = Actor()  # without a notebook nothing moves by itself; `session.tick()` does
         scene.driver.on_sign = self._seen
         super().__init__()
 
@@ -116,13 +114,7 @@ class Live(widgets.VBox):  # type: ignore[misc]
             self._changes += 1
             self.wake()
 
-        def hand_over(*arguments: Any) -> None:
-            if self._loop is None or self._loop.is_closed():
-                act(*arguments)
-            else:
-                self._loop.call_soon_threadsafe(act, *arguments)
-
-        return hand_over
+        return lambda *arguments: self._act(lambda: act(*arguments))
 
     def tell(self, error: Exception) -> None:
         """Say what went wrong where the person looks."""
@@ -130,8 +122,8 @@ class Live(widgets.VBox):  # type: ignore[misc]
 
     def wake(self) -> None:
         """See to it that the loop runs if there is something to do; from any thread."""
-        if self._loop is not None and not self._loop.is_closed():
-            self._loop.call_soon_threadsafe(self._start)
+        if self._act.loop is not None and not self._act.loop.is_closed():
+            self._act.loop.call_soon_threadsafe(self._start)
 
     def _seen(self, new: bool) -> None:
         """A page is new, or has drawn: then the loop goes on, should it have given up on it."""

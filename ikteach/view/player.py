@@ -1,6 +1,7 @@
 """The walking human of chapter 7: scene, controls, curves and table, alive."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import ipywidgets as widgets
@@ -78,9 +79,9 @@ class GaitPlayer(Live):
         if name == "method":
             session.show(value)
         elif name == "motion":
-            keep = {"forward": session.gait.forward, "wound": session.gait.wound}
-            session.gait = MOTIONS[value]
-            session.change(**keep)
+            session.gait = replace(
+                MOTIONS[value], forward=session.gait.forward, wound=session.gait.wound
+            )
             self.controls.agree(session.gait)
         elif name == "wounded":
             session.change(wound=WOUND if value else {})

@@ -1,6 +1,7 @@
 """The workbench of chapter 9: a human, nine panels, and everything that happened as data."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from math import cos, radians, sin
 from pathlib import Path
@@ -10,8 +11,8 @@ import ipywidgets as widgets
 import numpy as np
 
 from ikteach.body import forward, jacobian
-from ikteach.formats import session as files
 from ikteach.motion.gait import MOTIONS, WOUND, displayed
+from ikteach.motion.log import Log
 from ikteach.motion.mix import Mix
 from ikteach.motion.reachable import annulus
 from ikteach.motion.session import Session
@@ -20,6 +21,7 @@ from ikteach.solvers import SOLVERS, ellipsoid
 from ikteach.solvers.sdls import hard, soft
 from ikteach.view import panels
 from ikteach.view.glass import Glass
+from ikteach.view.keeping import Keeper
 from ikteach.view.live import Live
 from ikteach.view.player import table
 from ikteach.view.recorder import Recorder
@@ -52,7 +54,6 @@ class Workbench(Live):
     ) -> None:
         mix = Mix.of(Session().effectors, dict.fromkeys(Session().effectors.names, "dls"))
         session = Session(methods={**SOLVERS, "mix": mix}, **options)
-        self.folder = Path(folder)
         self._times = np.ones(len(session.tree))
         self._plus = np.zeros(len(session.tree))
         self._chosen = 0  # the effector whose J is drawn
@@ -72,10 +73,9 @@ class Workbench(Live):
             panel.on_change(self.guarded(self._obey))
         self.bar = self._bar()
         self.bar.on_change(self.guarded(self._obey))
-        self.saving = self._saving()
-        self.saving.on_change(self.guarded(self._obey))
+        self.keeper = Keeper(session, self._look_at, folder=folder)
         self._drawer = widgets.Accordion(
-            [*(panel.widget for panel in made), widgets.VBox([self.recorder, self.saving.widget])],
+            [*(panel.widget for panel in made), widgets.VBox([self.recorder, self.keeper])],
             titles=[*self.panels, "Recording"],
             selected_index=0,
             layout={"flex": "1 1 430px", "max_width": "640px", "min_width": "0"},
@@ -140,12 +140,15 @@ class Workbench(Live):
     def play(self) -> None:
         """Let time pass."""
         self._back_to_now()
+        self.session.note("play")
         self.bar.put(playing=True)
         self.bar.controls["playing"].description = "Pause"
         super().play()
 
     def pause(self) -> None:
         """Stop the clock; controls still act."""
+        if self.playing:
+            self.session.note("pause")
         self.bar.put(playing=False)
         self.bar.controls["playing"].description = "Play"
         super().pause()
@@ -156,7 +159,7 @@ class Workbench(Live):
         self._back_to_now()
         self.pause()
         self.stop()
-        for panel in (*self.panels.values(), self.bar, self.saving):
+        for panel in (*self.panels.values(), self.bar):
             for control in panel.controls.values():
                 control.disabled = True
         self.status.say("The workbench has ended: no loop runs. Run its cell again to begin anew.")
@@ -169,29 +172,13 @@ class Workbench(Live):
 
     def scrub(self) -> None:
         """Stop the clock, and look through what was."""
-        self.pause()
-        self._open(Replay(self.session.log(), self.scene))
-
-    def save(self, *, overwrite: bool = False) -> tuple[Path, Path]:
-        """Write the session to two files in `folder`, and return them."""
-        name = self.saving.controls["name"].value.strip()
-        if not name:
-            raise ValueError("a session needs a file name")
-        return files.save(self.folder / name, self.session, overwrite=overwrite)
-
-    def load(self) -> None:
-        """Look through a session that was saved."""
-        run = files.load(self.folder / self.saving.controls["name"].value.strip())
-        if run.tree.names != self.session.tree.names:
-            raise ValueError("that session is of another figure")
-        self.pause()
-        self._open(Replay(run, self.scene))
+        self._look_at(self.session.log())
 
     def close(self) -> None:
         """Stop every loop and free all that the page and the kernel hold of it."""
         self.stop()
         if getattr(self, "comm", None) is not None:
-            parts = (*self.panels.values(), self.bar, self.saving, self.targets, self.recorder)
+            parts = (*self.panels.values(), self.bar, self.targets, self.recorder, self.keeper)
             for part in (*parts, self.glass, self.replay, self._table, self._aside, self._drawer):
                 if part is not None:
                     part.close()
@@ -209,8 +196,6 @@ class Workbench(Live):
             "live": lambda _: self._back_to_now(),
             "reset": lambda _: self._reset(),
             "quit": lambda _: self.quit(),
-            "save": lambda _: self._saved(),
-            "load": lambda _: self.load(),
             "method": self._show,
             "motion": self._move,
             "forward": lambda on: session.change(forward=on),
@@ -256,10 +241,10 @@ class Workbench(Live):
         if motion == "by hand":
             session.by_hand = True
         else:
-            keep = {"forward": session.gait.forward, "wound": session.gait.wound}
             session.by_hand = False
-            session.gait = MOTIONS[motion]
-            session.change(**keep)
+            session.gait = replace(
+                MOTIONS[motion], forward=session.gait.forward, wound=session.gait.wound
+            )
         self._agree()
 
     def _aim(self, index: int, position: Any) -> None:
@@ -324,11 +309,6 @@ class Workbench(Live):
         self._back_to_now()
         self.session.reset()
         self.scene.clear()
-
-    def _saved(self) -> None:
-        settings, data = self.save(overwrite=self.saving.controls["replace"].value)
-        lost = self.session.log().lost()
-        self.status.say(f"Saved in {settings} and {data}. {lost}".strip())
 
     # What is looked at.
 
@@ -397,10 +377,13 @@ class Workbench(Live):
         targets.on_change(self.guarded(self._aim))
         return targets
 
-    def _open(self, replay: Replay) -> None:
+    def _look_at(self, run: Log) -> None:
+        if run.tree.names != self.session.tree.names:
+            raise ValueError("that session is of another figure")
+        self.pause()
         self._back_to_now()
-        self.replay = replay
-        self._aside.children = [replay]
+        self.replay = Replay(run, self.scene)
+        self._aside.children = [self.replay]
         self.status.say("A run is looked at. Play, or “Back to now”, goes on where it stopped.")
 
     def _back_to_now(self) -> None:
@@ -439,22 +422,3 @@ class Workbench(Live):
             "scrub": button("Look back"), "live": button("Back to now"), "quit": button("Quit"),
         }  # fmt: skip
         return panels.Panel("Session", [row])
-
-    def _saving(self) -> panels.Panel:
-        return panels.Panel(
-            "Save",
-            [
-                {
-                    "name": widgets.Text(
-                        value="session", description="Session file", style=panels.LABEL
-                    ),
-                },
-                {
-                    "save": widgets.Button(description="Save session"),
-                    "load": widgets.Button(description="Load session"),
-                    "replace": widgets.Checkbox(
-                        description="replace files of that name", indent=False
-                    ),
-                },
-            ],
-        )

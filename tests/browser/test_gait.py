@@ -236,7 +236,7 @@ def test_an_error_is_told_once_and_the_session_goes_on(gait: Notebook) -> None:
 def test_running_the_cell_again_leaves_one_loop(gait: Notebook) -> None:
     loops = (
         "sum(task.get_coro().__qualname__.endswith('Live._run') "
-        "for task in __import__('asyncio').all_tasks(player._loop) if not task.done())"
+        "for task in __import__('asyncio').all_tasks(player._act.loop) if not task.done())"
     )
     old = gait.kernel("player.scene.driver.model_id")
     gait.run_cell("player = GaitPlayer()")
