@@ -7,6 +7,7 @@ import pythreejs as three
 
 from ikteach.arrays import Array
 from ikteach.body.rotation import sticks, transforms
+from ikteach.view import solids
 from ikteach.view.skin import BLUE, EFFECTOR_COLOURS, GREEN, ORANGE, PURPLE, RED, SKY
 from ikteach.view.solids import HIDDEN, arrow, label, mark_shape, node, rod
 from ikteach.view.stage import LAYERS, SHOWN_AT, Now, Stage
@@ -89,7 +90,7 @@ class Trails(Layer):
             shapes.append((shape, three.MeshBasicMaterial(color=effector_colour(i))))
         for _ in range(len(stage)):
             for shape in shapes:
-                self.nodes += [node([three.Mesh(*shape)]) for _ in range(MARKS)]
+                self.nodes += [solids.moved(*shape) for _ in range(MARKS)]
         self.hold(*self.nodes)
 
     def place(self, now: Now) -> Array:
@@ -107,7 +108,7 @@ class Footprints(Layer):
 
     def build(self, joints: Joints) -> None:
         """A ring of prints for each foot of each figure."""
-        stage, unit = self.stage, self.stage.unit
+        stage = self.stage
         self._feet = feet(stage.effectors)
         self._prints = Prints((len(stage), len(self._feet)), PRINTS)
         for _ in range(len(stage)):
@@ -116,15 +117,15 @@ class Footprints(Layer):
                 look = three.MeshBasicMaterial(
                     color=effector_colour(i), transparent=True, opacity=0.55
                 )
-                size = (0.045 * unit, 0.004 * unit, 0.11 * unit)
-                self.nodes += [node([three.Mesh(shape, look, scale=size)]) for _ in range(PRINTS)]
+                self.nodes += [solids.moved(shape, look) for _ in range(PRINTS)]
         self.hold(*self.nodes)
 
     def place(self, now: Now) -> Array:
         """The prints, on the floor."""
         marks = self._prints.pass_through(now.effectors[:, self._feet], now.advance)
         marks[..., 1] = np.where(np.isnan(marks[..., 1]), np.nan, now.floor + 0.006)
-        return _at(marks + self.stage.places[:, None, None])
+        sole = self.stage.unit * np.array([0.045, 0.004, 0.11])
+        return _at(marks + self.stage.places[:, None, None], sole)
 
     def clear(self) -> None:
         """Forget the prints."""
@@ -193,7 +194,7 @@ class Reach(Layer):
                 for colour, opacity in ((PURPLE, 0.16), (ORANGE, 0.5))
             ]
         for _ in range(len(self.stage) * len(self.stage.effectors)):
-            self.nodes += [node([three.Mesh(round_as, look)]) for look in looks]
+            self.nodes += [solids.moved(round_as, look) for look in looks]
         self.hold(*self.nodes)
 
     def place(self, now: Now) -> Array:
@@ -232,8 +233,8 @@ def _distinct(stage: Stage) -> Array:
     return stage.places[:1] if stage.overlaid else stage.places
 
 
-def _at(points: Array) -> Array:
-    """Upright matrices (points, 3, 4) at these points; hidden where they are NaN."""
+def _at(points: Array, size: Array | float = 1.0) -> Array:
+    """Upright matrices (points, 3, 4) at these points, so large; hidden where they are NaN."""
     flat = points.reshape(-1, 3)
-    upright = transforms(np.broadcast_to(np.eye(3), (len(flat), 3, 3)), flat)
+    upright = transforms(np.broadcast_to(np.eye(3) * size, (len(flat), 3, 3)), flat)
     return np.where(np.isnan(flat[:, :1, None]), HIDDEN, upright)

@@ -18,6 +18,7 @@ from ikteach.names import unknown
 from ikteach.view import solids
 from ikteach.view.cameras import Cameras
 from ikteach.view.driver import Driver, rows
+from ikteach.view.flesh import mesh
 from ikteach.view.overlays import MAKERS, Layer, effector_colour
 from ikteach.view.picture import Still
 from ikteach.view.skin import DARK, EFFECTOR_COLOURS, LIGHT, SHIRT, Part, skin_of
@@ -211,20 +212,21 @@ class Scene:
 
     def _dress(self, f: int) -> None:
         """Put flesh, or rods, on the joints of figure f, and its name over its head."""
-        stage = self.stage
+        stage, thick = self.stage, 0.03 * self.stage.unit
         holders: dict[str | None, three.Group] = dict(
             zip(self.tree.names, self._joints[f], strict=True)
         )
         holders[None] = self._grounds[f]
-        flesh: dict[str | None, list[three.Object3D]] = {joint: [] for joint in holders}
+        parts = [self._coloured(part, f) for part in skin_of(self.tree, self.effectors, thick)]
         opacity = 0.5 if stage.overlaid and f > 0 else 1.0
-        for part in skin_of(self.tree, self.effectors, 0.03 * stage.unit):
-            flesh[part.joint] += solids.solid(self._coloured(part, f), opacity)
+        for joint in dict.fromkeys(part.joint for part in parts):
+            here = [part for part in parts if part.joint == joint]
+            holders[joint].children = [mesh(here, opacity)]
         if stage.names[f]:
-            words, at = stage.names[f], stage.name_at(f)
-            flesh[None].append(solids.label(words, self._colour(f), 0.13 * stage.unit, at))
-        for joint, parts in flesh.items():
-            holders[joint].children = parts
+            words = solids.label(
+                stage.names[f], self._colour(f), 0.13 * stage.unit, stage.name_at(f)
+            )
+            holders[None].children = [*holders[None].children, words]
 
     def _colour(self, f: int) -> str:
         return SHIRT if len(self.stage) == 1 else EFFECTOR_COLOURS[f % len(EFFECTOR_COLOURS)]
@@ -244,5 +246,7 @@ def _below(widget: widgets.Widget) -> list[widgets.Widget]:
         found[one.model_id] = one
         for name in one.keys:
             value = getattr(one, name, None)
+            if isinstance(value, dict):
+                value = list(value.values())
             waiting += value if isinstance(value, list | tuple) else [value]
     return list(found.values())
