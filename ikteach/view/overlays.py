@@ -6,13 +6,14 @@ import numpy as np
 import pythreejs as three
 
 from ikteach.arrays import Array
-from ikteach.body.rotation import sticks, transforms
+from ikteach.body.rotation import quaternion_from_y, sticks, transforms
 from ikteach.view import solids
 from ikteach.view.skin import BLUE, EFFECTOR_COLOURS, GREEN, ORANGE, PURPLE, RED, SKY
-from ikteach.view.solids import HIDDEN, arrow, label, mark_shape, node, rod
+from ikteach.view.solids import HIDDEN, mark_shape
 from ikteach.view.stage import LAYERS, SHOWN_AT, Now, Stage
 from ikteach.view.trails import MARKS, PRINTS, Prints, Trail, feet
 
+AXIS_COLOURS = (RED, GREEN, BLUE)
 Joints = list[list[three.Group]]  # the groups of the joints, a list a figure
 
 
@@ -52,14 +53,19 @@ class WorldAxes(Layer):
     """x, y and z through the origin, each with its letter."""
 
     def build(self, joints: Joints) -> None:
-        """Three half axes for each figure."""
+        """Three half axes where each figure stands."""
         unit, parts = self.stage.unit, []
-        for place in _distinct(self.stage):
-            for direction, letter, colour in zip(np.eye(3), "xyz", (RED, GREEN, BLUE), strict=True):
-                shaft = rod(direction, 0.7 * unit, 0.012 * unit, colour)
-                shaft.position = (place + 0.35 * unit * direction).tolist()
-                end = (place + 0.78 * unit * direction).tolist()
-                parts += [shaft, label(letter, colour, 0.14 * unit, end)]
+        shaft = solids.rod(0.7 * unit, 0.012 * unit)
+        looks = [three.MeshBasicMaterial(color=colour) for colour in AXIS_COLOURS]
+        for place in self.stage.places[:1] if self.stage.overlaid else self.stage.places:
+            for way, letter, look in zip(np.eye(3), "xyz", looks, strict=True):
+                middle, end = place + 0.35 * unit * way, place + 0.78 * unit * way
+                parts += [
+                    three.Mesh(
+                        shaft, look, position=middle.tolist(), quaternion=quaternion_from_y(way)
+                    ),
+                    solids.label(letter, look.color, 0.14 * unit, end.tolist()),
+                ]
         self.hold(*parts)
 
 
@@ -68,10 +74,12 @@ class JointAxes(Layer):
 
     def build(self, joints: Joints) -> None:
         """A rod for each joint; an axis is the same in its joint's own frame, at any angle."""
-        unit = self.stage.unit
+        unit, looks = self.stage.unit, solids.paints()
+        shaft = solids.rod(0.32 * unit, 0.009 * unit)
+        ways = [quaternion_from_y(axis) for axis in self.stage.tree.axes]
         for figure in joints:
-            for j, (group, axis) in enumerate(zip(figure, self.stage.tree.axes, strict=True)):
-                thing = rod(axis, 0.32 * unit, 0.009 * unit, joint_colour(j))
+            for j, (group, way) in enumerate(zip(figure, ways, strict=True)):
+                thing = three.Mesh(shaft, looks[j % len(looks)], quaternion=way)
                 group.children = [*group.children, thing]
                 self.things.append(thing)
 
@@ -137,10 +145,13 @@ class Columns(Layer):
 
     def build(self, joints: Joints) -> None:
         """An arrow for each joint of each figure, in the colour of the joint's axis."""
+        shape, looks = (
+            solids.arrow(0.013 * self.stage.unit),
+            solids.paints(three.MeshLambertMaterial),
+        )
         for _ in range(len(self.stage)):
             self.nodes += [
-                node(arrow(0.013 * self.stage.unit, joint_colour(j)))
-                for j in range(len(self.stage.tree))
+                solids.moved(shape, looks[j % len(looks)]) for j in range(len(self.stage.tree))
             ]
         self.hold(*self.nodes)
 
@@ -161,11 +172,12 @@ class Ellipsoids(Layer):
 
     def build(self, joints: Joints) -> None:
         """A ball of radius 1 for each figure, to be stretched."""
-        ball = three.SphereBufferGeometry(1, 28, 20)
+        ball, shaft = three.SphereBufferGeometry(1, 28, 20), solids.rod(2.0, 0.012)
+        line = three.MeshBasicMaterial(color=PURPLE)
         look = three.MeshLambertMaterial(color=SKY, transparent=True, opacity=0.4, depthWrite=False)
         for _ in range(len(self.stage)):
-            axes = [rod(way, 2.0, 0.012, PURPLE) for way in np.eye(3)]
-            self.nodes.append(node([*axes, three.Mesh(ball, look)]))
+            axes = [three.Mesh(shaft, line, quaternion=quaternion_from_y(w)) for w in np.eye(3)]
+            self.nodes.append(solids.node([*axes, three.Mesh(ball, look)]))
         self.hold(*self.nodes)
 
     def place(self, now: Now) -> Array:
@@ -221,16 +233,6 @@ MAKERS: dict[str, Callable[[Stage, Joints], Layer]] = dict(
 def effector_colour(i: int) -> str:
     """The colour of effector i and its target."""
     return EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)]
-
-
-def joint_colour(j: int) -> str:
-    """The colour of joint j's axis and of its column of J."""
-    return EFFECTOR_COLOURS[j % len(EFFECTOR_COLOURS)]
-
-
-def _distinct(stage: Stage) -> Array:
-    """The places where figures stand, each once."""
-    return stage.places[:1] if stage.overlaid else stage.places
 
 
 def _at(points: Array, size: Array | float = 1.0) -> Array:
