@@ -17,6 +17,7 @@ from ikteach.body.rotation import sticks, transforms
 from ikteach.names import unknown
 from ikteach.view import solids
 from ikteach.view.cameras import Cameras
+from ikteach.view.closing import close_all
 from ikteach.view.driver import Driver, rows
 from ikteach.view.flesh import mesh
 from ikteach.view.overlays import MAKERS, Layer, effector_colour
@@ -122,7 +123,7 @@ class Scene:
             self._dark = on
             self._floor.children = [solids.grid(self.stage.unit, on)]
             self.scene.background = DARK if on else LIGHT
-            before.close()
+            close_all(before)
 
     def show(
         self, theta: Array, targets: Array, *, floor: float | None = None, advance: float = 0.0,
@@ -182,11 +183,8 @@ class Scene:
             picture.close()
 
     def close(self) -> None:
-        """Free what the page and the kernel hold of this scene."""
-        self.driver.close()
-        for widget in _below(self.renderer):
-            widget.close()
-        self.widget.close()
+        """Free what the page and the kernel hold of this scene, and of what is mounted in it."""
+        close_all(self.widget, *self.cameras.parts)
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
         """The live widget, and beside it a still for places without a kernel."""
@@ -233,20 +231,3 @@ class Scene:
 
     def _coloured(self, part: Part, f: int) -> Part:
         return part._replace(colour=self._colour(f)) if part.colour == SHIRT else part
-
-
-def _below(widget: widgets.Widget) -> list[widgets.Widget]:
-    """The widget and all that it holds, each once."""
-    found: dict[str, widgets.Widget] = {}
-    waiting = [widget]
-    while waiting:
-        one = waiting.pop()
-        if not isinstance(one, widgets.Widget) or one.model_id in found:
-            continue
-        found[one.model_id] = one
-        for name in one.keys:
-            value = getattr(one, name, None)
-            if isinstance(value, dict):
-                value = list(value.values())
-            waiting += value if isinstance(value, list | tuple) else [value]
-    return list(found.values())

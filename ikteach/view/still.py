@@ -8,6 +8,7 @@ from ikteach.arrays import Array, ArrayLike
 from ikteach.body import Effectors, Tree
 from ikteach.names import unknown
 from ikteach.view import skin
+from ikteach.view.closing import close_all
 from ikteach.view.picture import Picture
 from ikteach.view.sheet import BEFORE, BEHIND, DPI, Sheet
 from ikteach.view.skin import EFFECTOR_COLOURS
@@ -19,7 +20,7 @@ class StillScene:
     """One or several figures with k targets each, drawn by matplotlib; a `stage.View`.
 
     It takes what `scene.Scene` takes. `widget` is a picture with words for those who cannot see
-    it; `png` and `alt` are the two themselves, empty before anything is shown.
+    it; `png` and `alt` are the two themselves.
     """
 
     def __init__(
@@ -28,9 +29,9 @@ class StillScene:
     ) -> None:  # fmt: skip
         self.tree, self.effectors = tree, effectors
         self.stage = Stage(tree, effectors, names, apart)
-        self.dark = dark
-        self.png, self.alt = b"", ""
+        self._dark = dark
         self._widget: Picture | None = None
+        self._png = b""  # of what was shown last, once somebody has asked for it
         self._size = (width / DPI, height / DPI)
         self._skin = skin.skin_of(tree, effectors, 0.03 * self.stage.unit)
         self._on: set[str] = set()
@@ -41,29 +42,51 @@ class StillScene:
         self._now: Now | None = None
 
     @property
+    def dark(self) -> bool:
+        """Whether the background is dark; may be set."""
+        return self._dark
+
+    @dark.setter
+    def dark(self, on: bool) -> None:
+        self._dark = on
+        self._changed()
+
+    @property
     def layers(self) -> dict[str, bool]:
         """Which layers are drawn."""
         return {name: name in self._on for name in LAYERS}
 
     @property
     def widget(self) -> Picture:
-        """The picture, made when it is first asked for."""
+        """The picture, made when it is first asked for, and drawn anew at each change from then."""
         if self._widget is None:
             self._widget = Picture(png=self.png, alt=self.alt)
         return self._widget
+
+    @property
+    def png(self) -> bytes:
+        """What was shown last; empty if nothing was."""
+        if not self._png and self._now is not None:
+            self._png = self._draw(self._now)
+        return self._png
+
+    @property
+    def alt(self) -> str:
+        """What was shown last, in words."""
+        return "" if self._now is None else self._words(self._now)
 
     def switch(self, layer: str, on: bool = True) -> None:
         """Draw a layer, or do not; LookupError for an unknown name."""
         if layer not in LAYERS:
             raise LookupError(unknown("layer", layer, LAYERS))
         self._on = self._on | {layer} if on else self._on - {layer}
-        self._draw()
+        self._changed()
 
     def look_from(self, side: str) -> None:
         """Put the camera to one of `CAMERAS`, or to "plane": along −z."""
         side_of(side)
         self._side = side
-        self._draw()
+        self._changed()
 
     def show(
         self, theta: Array, targets: Array, *, floor: float | None = None, advance: float = 0.0,
@@ -75,7 +98,9 @@ class StillScene:
         self._now = self.stage.now(
             theta, targets, floor, advance, effector, columns, ellipsoid, reach
         )
-        self._draw()
+        self._trail.pass_through(self._now.effectors, advance)
+        self._prints.pass_through(self._now.effectors[:, feet(self.effectors)], advance)
+        self._changed()
 
     def clear(self) -> None:
         """Forget trails and footprints."""
@@ -85,22 +110,23 @@ class StillScene:
     def close(self) -> None:
         """Free the picture."""
         if self._widget is not None:
-            self._widget.close()
+            close_all(self._widget)
 
     def _repr_mimebundle_(self, **kwargs: object) -> dict[str, object]:
         return {"image/png": self.png, "text/plain": self.alt}
 
-    def _draw(self) -> None:
-        if self._now is None:
-            return
-        sheet = Sheet(self._side, self._size, self.stage, self.dark)
-        self._draw_floor(sheet, self._now)
-        for f in reversed(range(len(self.stage))):
-            self._draw_figure(sheet, self._now, f)
-        self._draw_layers(sheet, self._now)
-        self.png, self.alt = sheet.png(), self._words(self._now)
+    def _changed(self) -> None:
+        self._png = b""
         if self._widget is not None:
             self._widget.png, self._widget.alt = self.png, self.alt
+
+    def _draw(self, now: Now) -> bytes:
+        sheet = Sheet(self._side, self._size, self.stage, self.dark)
+        self._draw_floor(sheet, now)
+        for f in reversed(range(len(self.stage))):
+            self._draw_figure(sheet, now, f)
+        self._draw_layers(sheet, now)
+        return sheet.png()
 
     def _draw_floor(self, sheet: Sheet, now: Now) -> None:
         side = SQUARE * self.stage.unit
@@ -141,9 +167,8 @@ class StillScene:
         return _colour(f) if several else part.colour
 
     def _draw_layers(self, sheet: Sheet, now: Now) -> None:
-        stage = self.stage
-        trail = self._trail.pass_through(now.effectors, now.advance)
-        prints = self._prints.pass_through(now.effectors[:, feet(stage.effectors)], now.advance)
+        stage, trail = self.stage, self._trail.marks - [0.0, 0.0, now.advance]
+        prints = self._prints.marks - [0.0, 0.0, now.advance]
         prints[..., 1] += now.floor - prints[..., 1]  # on the floor; where there is none, NaN
         at = now.effectors[:, now.effector] + stage.places
         on, which = self._on, feet(stage.effectors)
@@ -153,7 +178,7 @@ class StillScene:
             if "joint axes" in on:
                 self._joint_axes(sheet, now, f)
             if "footprints" in on:
-                self._dots(sheet, prints[f], which, f, 9)
+                self._dots(sheet, prints[f], which, f, 14)
             if "trails" in on:
                 self._dots(sheet, trail[f], range(len(stage.effectors)), f, 3)
             if "columns of J" in on:
