@@ -103,6 +103,7 @@ _eye = _np.array({name}.camera.position)
 _x, _y, _z = (_np.array({panel}.positions[{target}]) - _eye) @ _axes(_eye)
 """
     x, y, z = scene.kernel("[float(_x), float(_y), float(_z)]", code)
+    scene.page.locator(CANVAS).first.scroll_into_view_if_needed()
     box = scene.page.locator(CANVAS).first.bounding_box()
     assert box
     focal = box["height"] / 2 / np.tan(np.radians(22.5))
