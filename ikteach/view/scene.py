@@ -83,6 +83,7 @@ class Scene:
         self.cameras = Cameras(self.renderer, aspect, scale)
         self.look_from(stage.side)
         self.driver = Driver(self.renderer, nodes, description=stage.words)
+        self.driver.on_sign = self._greet
         self._made: dict[str, Layer] = {}  # in the order of their nodes in the driver
         self._on: set[str] = set()
         self._dark = dark
@@ -191,6 +192,11 @@ class Scene:
         bundle = self.widget._repr_mimebundle_(**kwargs)
         still = self.still()
         return {**bundle, "image/png": still.png, "text/plain": still.alt}
+
+    def _greet(self, new: bool) -> None:
+        """Show a page that begins to look what was shown last."""
+        if new and self._last:
+            self.show(**self._last)
 
     def _make(self, layer: str) -> None:
         made = self._made[layer] = MAKERS[layer](self.stage, self._joints)

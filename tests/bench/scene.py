@@ -46,7 +46,7 @@ def build(count):
         change += 1
         solve(shown, targets.positions)
     targets.on_change(follow)
-    scene.driver.on_sign = lambda new: follow() if new else None
+    follow()
     return scene.widget
 def solve(shown, goal):
     for i, method in enumerate(shown):

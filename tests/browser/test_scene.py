@@ -44,12 +44,11 @@ def draw():
     scene.show(theta, targets.positions, effector=3, columns=J, ellipsoid=ellipsoid(J),
                reach=[((0.23, 0.37, 0), 0.1, 0.7)])
 targets.on_change(follow)
-scene.driver.on_sign = lambda new: draw() if new else None
 follow()
 VBox([scene.widget, targets])"""
 FOUR = """scene.close(); targets.close()
 four = Scene(tree, effectors, names=["transpose", "pseudoinverse", "dls", "sdls"], width=900)
-four.driver.on_sign = lambda new: four.show(theta, targets.positions) if new else None
+four.show(theta, targets.positions)
 four"""
 ARM = """four.close()
 arm = figures.planar_arm(3)
@@ -58,7 +57,7 @@ goal = Targets(plane, [[1.5, 1.5, 0]])
 def draw(*_):
     plane.show([0.4, 0.5, 0.6], goal.positions)
 goal.on_change(draw)
-plane.driver.on_sign = lambda new: draw() if new else None
+draw()
 plane.widget"""
 
 
@@ -171,6 +170,24 @@ def test_escape_takes_a_whole_drag_back(scene: Notebook) -> None:
     scene.page.keyboard.press("Escape")
     settle(scene, position(HAND), was)
     scene.page.wait_for_selector(f"{SAID} >> text=Taken back", timeout=READY)
+
+
+def test_a_finger_drags_too(scene: Notebook) -> None:
+    was = scene.kernel(position(HAND))
+    eye = scene.kernel("list(scene.camera.position)")
+    x, y = where(scene, HAND)
+    finger = scene.page.context.new_cdp_session(scene.page)
+    for kind, step in [("touchStart", 0), *(("touchMove", step) for step in range(1, 7))]:
+        points = [{"x": x - 6 * step, "y": y - 4 * step}]
+        finger.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+        scene.page.wait_for_timeout(20)
+    finger.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    finger.detach()
+    settle(scene, f"bool(targets.positions[{HAND}, 1] > {was[1] + 0.02})", True)
+    assert np.hypot(*(np.array(where(scene, HAND)) - [x - 36, y - 24])) < 3
+    assert scene.kernel("list(scene.camera.position)") == eye
+    scene.kernel("None", "targets.undo()")
+    settle(scene, position(HAND), was)
 
 
 def test_by_keyboard_alone(scene: Notebook) -> None:

@@ -68,6 +68,17 @@ def test_a_lone_human_sends_what_moves_and_no_more(make):
     assert gaps[:, :, 1] == pytest.approx(TARGETS - HERE, abs=1e-6)
 
 
+def test_a_new_page_is_shown_what_was_shown_last(make):
+    scene = make()
+    _, before = message(scene, floor=-0.9)
+    sent = []
+    scene.driver.send = lambda content, buffers: sent.append(buffers[0])
+    scene.driver._hear(None, {"drawn": 0}, [])
+    assert sent == []
+    scene.driver._hear(None, {"hello": True}, [])
+    assert np.frombuffer(sent[0], "<f4").reshape(-1, 4, 3).swapaxes(1, 2) == pytest.approx(before)
+
+
 @pytest.mark.parametrize("layer", LAYERS)
 def test_a_layer_costs_nothing_before_it_is_wanted(make, layer):
     scene = make()
