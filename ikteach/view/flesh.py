@@ -50,9 +50,9 @@ def _limb(limb: Limb) -> tuple[Array, Array]:
     start, end = np.asarray(limb.start, dtype=float), np.asarray(limb.end, dtype=float)
     R = sticks(start, end)[:, :3]
     length = np.linalg.norm(R[:, 1])
-    R = R / [1, length, 1]  # the stick is stretched; a surface is only turned
-    far = GLOBE[:, 1:2] > 0
-    along = np.where(far, limb.thin, limb.thick) * GLOBE + np.where(far, [0, length, 0], 0)
+    R = R / np.array([1.0, length, 1.0])  # the stick is stretched; a surface is only turned
+    far, up = GLOBE[:, 1:2] > 0, np.array([0.0, length, 0.0])
+    along = np.where(far, limb.thin, limb.thick) * GLOBE + np.where(far, up, 0.0)
     return start + along @ R.T, GLOBE @ R.T
 
 
