@@ -14,6 +14,7 @@ EFFECTOR_COLOURS = (BLUE, ORANGE, RED, GREEN, PURPLE, SKY)
 
 LIGHT, DARK = "#f4f6f8", "#0f1318"  # backgrounds
 SKIN, SHIRT, TROUSERS, SHOES, HAIR = "#d9a57e", "#5f8fb4", "#4a5568", "#2d3340", "#4b3a2f"
+JOINTS = "#aab4be"  # of rods
 
 
 class Limb(NamedTuple):
@@ -96,7 +97,7 @@ def stick_skin(tree: Tree, effectors: Effectors, thick: float = 0.03) -> list[Pa
     parts: list[Part] = []
     for j, name in enumerate(tree.names):
         parent = tree.names[tree.parents[j]] if tree.parents[j] >= 0 else None
-        parts.append(Ball(name, (0, 0, 0), (1.4 * thick,) * 3, TROUSERS))
+        parts.append(Ball(name, (0, 0, 0), (1.4 * thick,) * 3, JOINTS))
         if tree.offsets[j].any():
             parts.append(Limb(parent, (0, 0, 0), tree.offsets[j].tolist(), thick, thick, SHIRT))
     for joint, offset in zip(effectors.joints, effectors.offsets, strict=True):

@@ -6,9 +6,8 @@ from typing import Any
 import numpy as np
 import pythreejs as three
 
-from ikteach.arrays import Array, ArrayLike
-from ikteach.body.rotation import quaternion_from_y
-from ikteach.view.skin import GREY
+from ikteach.arrays import Array
+from ikteach.view.skin import EFFECTOR_COLOURS, GREY
 from ikteach.view.stage import SQUARE
 
 # Where what is not to be seen is: far outside the picture, and tiny. Not of size 0, because
@@ -20,6 +19,11 @@ Children = Sequence[three.Object3D]
 def node(children: Children = ()) -> three.Group:
     """Something that the driver moves: its matrix is given, not made from position and so on."""
     return three.Group(children=list(children), matrixAutoUpdate=False)
+
+
+def moved(shape: three.BufferGeometry, material: three.Material) -> three.Mesh:
+    """A mesh that the driver moves, without a group around it."""
+    return three.Mesh(shape, material, matrixAutoUpdate=False)
 
 
 def lights() -> list[three.Light]:
@@ -63,24 +67,20 @@ def gap(unit: float) -> list[three.Mesh]:
     return [three.Mesh(shape, material, position=(0, 0.5, 0))]
 
 
-def rod(direction: ArrayLike, length: float, radius: float, colour: str) -> three.Mesh:
-    """A rod through the origin, half its length to either side."""
-    return three.Mesh(
-        three.CylinderBufferGeometry(radius, radius, length, 8),
-        three.MeshBasicMaterial(color=colour),
-        quaternion=quaternion_from_y(direction),
-    )
+def rod(length: float, radius: float) -> three.BufferGeometry:
+    """A rod along y, half its length to either side of the origin."""
+    return three.CylinderBufferGeometry(radius, radius, length, 8)
 
 
-def arrow(radius: float, colour: str) -> list[three.Mesh]:
+def arrow(radius: float) -> three.BufferGeometry:
     """An arrow one metre along y, to be stretched to its length."""
-    material = three.MeshLambertMaterial(color=colour)
-    shaft = three.CylinderBufferGeometry(radius, radius, 0.78, 8)
-    head = three.CylinderBufferGeometry(0, 2.4 * radius, 0.22, 12)
-    return [
-        three.Mesh(shaft, material, position=(0, 0.39, 0)),
-        three.Mesh(head, material, position=(0, 0.89, 0)),
-    ]
+    outline = [(0, 0), (radius, 0), (radius, 0.78), (2.4 * radius, 0.78), (0, 1)]
+    return three.LatheBufferGeometry([list(map(float, point)) for point in outline], 10)
+
+
+def paints(kind: type[three.Material] = three.MeshBasicMaterial) -> list[three.Material]:
+    """A material of each colour in `EFFECTOR_COLOURS`."""
+    return [kind(color=colour) for colour in EFFECTOR_COLOURS]
 
 
 def label(text: str, colour: str, height: float, at: Sequence[float]) -> three.Sprite:
