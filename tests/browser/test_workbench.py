@@ -1,0 +1,325 @@
+"""Chapter 9 as a person has it: nine panels whose controls act, in the session and in pixels."""
+
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.browser.conftest import READY, Notebook
+from tests.browser.test_gait import CANVAS, DRIVER, frames, pixels, settle
+
+HEADER = ".jupyter-widget-Collapse-header"
+LOOPS = (
+    "sum('Live._run' in task.get_coro().__qualname__ "
+    "for task in __import__('asyncio').all_tasks(bench._act.loop) if not task.done())"
+)
+
+
+@pytest.fixture(scope="module")
+def bench(open_notebook: Any) -> Iterator[Notebook]:
+    notebook = open_notebook("09_workbench.ipynb")
+    notebook.run_cell("bench = Workbench()")
+    notebook.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
+    yield notebook
+    assert notebook.errors == []
+
+
+def press(bench: Notebook, button: str) -> None:
+    bench.page.get_by_role("button", name=button, exact=True).first.click()
+
+
+def open_panel(bench: Notebook, title: str) -> None:
+    header = bench.page.locator(HEADER).get_by_text(title, exact=True).first
+    box = header.locator("xpath=ancestor::*[contains(@class,'jupyter-widget-Collapse')][1]/..")
+    if "jupyter-widget-Collapse-open" not in (box.get_attribute("class") or ""):
+        header.click()
+
+
+def picture(bench: Notebook, name: str) -> np.ndarray:
+    frames_settled(bench)
+    return pixels(bench.shot(f"09_{name}", CANVAS))
+
+
+def frames_settled(bench: Notebook) -> None:
+    """Wait until what was sent has been drawn, and the browser has painted it."""
+    bench.page.evaluate(
+        "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
+    )
+    time.sleep(0.3)
+
+
+def changed(before: np.ndarray, after: np.ndarray) -> float:
+    """The share of pixels that are not what they were."""
+    if before.shape != after.shape:
+        return 1.0
+    return (abs(before - after).max(axis=-1) > 12).mean()
+
+
+def control(name: str) -> str:
+    return f"bench._control({name!r})"
+
+
+def slide(bench: Notebook, label: str, key: str = "End") -> None:
+    handle = bench.page.locator(".widget-slider", has_text=label).locator(".noUi-handle").first
+    handle.focus()
+    bench.page.keyboard.press(key)
+
+
+def choose(bench: Notebook, label: str, option: str) -> None:
+    bench.page.get_by_label(label, exact=True).first.select_option(option)
+
+
+def tick(bench: Notebook, label: str) -> None:
+    bench.page.locator(".widget-checkbox", has_text=label).locator("input").first.click()
+
+
+def still(bench: Notebook) -> None:
+    """Pause, so that what changes in the picture is what the test does."""
+    if bench.kernel("bench.playing"):
+        press(bench, "Pause")
+        settle(bench, "bench._task.done()", True)
+
+
+def test_method(bench: Notebook) -> None:
+    frames(bench, 10)
+    open_panel(bench, "Method")
+    for method in ("transpose", "pseudoinverse", "sdls", "mix", "dls"):
+        press(bench, method)
+        settle(bench, "bench.session.method", method)
+        frames(bench, 2)
+    open_panel(bench, "Options of the methods")
+    methods = "__import__('ikteach.motion.session', fromlist=['x']).in_words(bench.session.methods)"
+    slide(bench, "dls: damping")
+    settle(bench, f"round({methods}['dls']['damping'], 3)", 1.0)
+    slide(bench, "transpose: gain")
+    settle(bench, f"{methods}['transpose']['gain']", 2.0)
+    slide(bench, "pseudoinverse: cutoff")
+    settle(bench, f"{methods}['pseudoinverse']['cutoff']", 0.5)
+    slide(bench, "sdls: γ_max", "Home")
+    settle(bench, f"{methods}['sdls']['max_angle']", 0.05)
+    press(bench, "soft")
+    settle(bench, f"{methods}['sdls']['clamp']", "soft")
+    open_panel(bench, "Mix: a method per effector")
+    choose(bench, "hand.l", "transpose")
+    settle(bench, f"{methods}['mix']['hand.l']", "transpose")
+    open_panel(bench, "Around the solver")
+    press(bench, "equal")
+    settle(bench, "round(bench.session.caps['dls'], 4)", 0.1745)
+    slide(bench, "equal cap")
+    settle(bench, "round(bench.session.caps['dls'], 4)", 1.5708)
+    press(bench, "each author's own")
+    settle(
+        bench, "[round(bench.session.caps['dls'], 4), bench.session.caps['sdls']]", [0.7854, None]
+    )
+    options = "__import__('ikteach.motion.session', fromlist=['x']).in_words(bench.session.options)"
+    press(bench, "per_chain")
+    settle(bench, f"{options}['cap']", "per_chain")
+    press(bench, "clip")
+    settle(bench, f"{options}['limits']", "clip")
+    tick(bench, "clamp errors")
+    settle(bench, f"{options}['max_error']", 0.4)
+    slide(bench, "error clamp")
+    settle(bench, f"{options}['max_error']", 1.0)
+    assert bench.kernel("bench.status.wrong") == ""
+
+
+def test_motion_and_motion_control(bench: Notebook) -> None:
+    still(bench)
+    before = picture(bench, "walking")
+    open_panel(bench, "Motion")
+    press(bench, "running")
+    settle(bench, "bench.session.gait.name", "running")
+    press(bench, "Step")
+    settle(bench, "bench._task.done()", True)
+    assert changed(before, picture(bench, "running")) > 0.01
+    press(bench, "walking")
+    settle(bench, "bench.session.gait.name", "walking")
+    open_panel(bench, "Motion control")
+    tick(bench, "moving forward")
+    settle(bench, "bench.session.gait.forward", True)
+    tick(bench, "wounded")
+    settle(bench, "sorted(bench.session.gait.wound)", ["ankle.r", "hip.bend.r", "knee.r"])
+    choose(bench, "Joint", "elbow.l")
+    settle(bench, f"{control('mobility')}.value", 1.0)
+    slide(bench, "mobility", "Home")
+    settle(bench, "bench.session.gait.wound.get('elbow.l')", 0.0)
+    before = picture(bench, "drawn_before")
+    slide(bench, "drawn + [°]", "End")
+    settle(bench, "float(bench._plus.max().round(4))", 1.0472)
+    slide(bench, "drawn ×", "Home")
+    settle(bench, "float(bench._times.min())", 0.0)
+    assert changed(before, picture(bench, "drawn_after")) > 0.005
+    press(bench, "Heal all")
+    settle(bench, "[bench.session.gait.wound, float(bench._plus.max())]", [{}, 0.0])
+
+
+def test_view(bench: Notebook) -> None:
+    still(bench)
+    open_panel(bench, "View")
+    before = picture(bench, "view")
+    choose(bench, "View", "side")
+    settle(bench, "list(bench.scene.cameras.current.position)[0] > 2", True)
+    assert changed(before, picture(bench, "view_side")) > 0.03
+    press(bench, "orthographic")
+    settle(bench, "bench.scene.cameras.orthographic", True)
+    parallel = picture(bench, "view_parallel")
+    press(bench, "perspective")
+    choose(bench, "View", "three-quarter")
+    choose(bench, "J and ellipsoid of", "hand.l")
+    settle(bench, "bench._chosen", 3)
+    assert changed(before, parallel) > 0.03
+    layers = bench.kernel("[name for name in bench.scene.layers]")
+    for layer in [*layers, "targets"]:
+        was = picture(bench, "layer_before")
+        tick(bench, layer)
+        if layer in ("footprints", "trails"):
+            for _ in range(4):
+                press(bench, "Step")
+            settle(bench, "bench._task.done()", True)
+        else:
+            time.sleep(0.3)
+        assert changed(was, picture(bench, f"layer_{layer.replace(' ', '_')}")) > 0.0005, layer
+        tick(bench, layer)
+        settle(bench, "any(bench.scene.layers.values())", False)
+    tick(bench, "dark")
+    settle(bench, "bench.scene.dark", True)
+    assert picture(bench, "dark")[2, 2].max() < 60
+    tick(bench, "dark")
+    settle(bench, "bench.scene.dark", False)
+
+
+def test_object(bench: Notebook) -> None:
+    still(bench)
+    open_panel(bench, "Object")
+    at = "[round(x, 2) for x in bench.scene.cameras.current.position]"
+    for label in ("turn [°]", "tilt [°]", "zoom", "move right", "move up"):
+        was, before = bench.kernel(at), picture(bench, "object")
+        slide(bench, label, "End")
+        settle(bench, f"{at} != {was}", True)
+        assert changed(before, picture(bench, "object_moved")) > 0.005, label
+    press(bench, "As it was")
+    settle(bench, f"{control('zoom')}.value", 1.0)
+    ball = bench.page.locator(".ikteach-ball").first
+    ball.focus()
+    was = bench.kernel(at)
+    bench.page.keyboard.press("ArrowLeft")
+    settle(bench, f"{at} != {was}", True)
+    was, box = bench.kernel(at), ball.bounding_box()
+    assert box
+    bench.page.mouse.move(box["x"] + 60, box["y"] + 60)
+    bench.page.mouse.down()
+    bench.page.mouse.move(box["x"] + 90, box["y"] + 70, steps=4)
+    bench.page.mouse.up()
+    settle(bench, f"{at} != {was}", True)
+    press(bench, "As it was")
+
+
+def test_speed_and_target_position(bench: Notebook) -> None:
+    for title, rows in {
+        "Speed": {
+            "speed ω": ("speed", 20.0), "step frequency": ("step_frequency", 3.0),
+            "slowdown": ("slowdown", 10),
+        },
+        "Target position": {
+            "left foot z swing": ("back_z_leg", 0.8), "right foot z swing": ("front_z_leg", 0.8),
+            "left foot y": ("back_y_leg", -0.4), "right foot y": ("front_y_leg", -0.4),
+            "hands z swing": ("hand_z", 1.2), "right hand y": ("back_y_hand", 1.0),
+            "left hand y": ("front_y_hand", 1.0),
+        },
+    }.items():  # fmt: skip
+        open_panel(bench, title)
+        for label, (parameter, end) in rows.items():
+            slide(bench, label)
+            settle(bench, f"bench.session.gait.{parameter}", end)
+    open_panel(bench, "Motion")
+    press(bench, "running")
+    settle(bench, "bench.session.gait.speed", 9.0)
+    press(bench, "walking")
+    settle(bench, "[bench.session.gait.slowdown, bench.session.gait.speed]", [1, 5.6])
+
+
+def test_a_target_is_dragged_and_the_table_says_so(bench: Notebook) -> None:
+    still(bench)
+    press(bench, "Reset")
+    open_panel(bench, "Target position")
+    settle(bench, "bench.session.ticks", 0)
+    box = bench.page.locator("input[type=number][aria-label='hand.l y']")
+    box.fill("0.4")
+    box.press("Enter")
+    settle(bench, "[bench.session.by_hand, bench.session.targets[3].tolist()[1]]", [True, 0.4])
+    box.fill("99")
+    box.press("Enter")
+    alert = bench.page.locator(".ikteach-alert[role=alert]:not(:empty)")
+    alert.wait_for(timeout=READY)
+    assert "goes from" in alert.inner_text()
+    assert bench.kernel("bench.session.targets[3].tolist()[1]") == 0.4
+    press(bench, "Play")
+    frames(bench, 20)
+    near = bench.kernel("float(bench.session.error[3])")
+    assert near < 0.3
+    canvas = bench.page.locator(CANVAS).first
+    canvas.focus()
+    for _ in range(4):
+        bench.page.keyboard.press("Tab")
+    before = bench.kernel("bench.session.targets.tolist()")
+    bench.page.keyboard.press("ArrowDown")
+    settle(bench, f"bench.session.targets.tolist() != {before}", True)
+    bench.page.keyboard.press("Escape")
+    settle(bench, f"bench.session.targets.tolist() == {before}", True)
+    bench.page.wait_for_function(
+        "document.querySelector('.ikteach-driver').textContent.includes('by hand')", timeout=READY
+    )
+    press(bench, "Undo")
+    assert bench.kernel("bench.status.wrong") == ""
+
+
+def test_look_back_and_back_to_now(bench: Notebook) -> None:
+    frames(bench, 10)
+    press(bench, "Look back")
+    settle(bench, "bench.replay is not None and not bench.playing", True)
+    slider = bench.page.locator(".widget-slider", has_text="Tick").locator(".noUi-handle").first
+    slider.focus()
+    before = picture(bench, "replay_start")
+    bench.page.keyboard.press("End")
+    settle(bench, "bench.replay.at == len(bench.replay.run) - 1", True)
+    assert changed(before, picture(bench, "replay_end")) > 0.002
+    press(bench, "Back to now")
+    settle(bench, "bench.replay is None", True)
+
+
+def test_figures_of_all_methods(bench: Notebook) -> None:
+    open_panel(bench, "View")
+    for figures in ("all methods, overlaid", "all methods, side by side", "one figure"):
+        choose(bench, "Figures", figures)
+        settle(bench, "bench._figures", figures)
+        bench.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
+        settle(bench, "bench.scene.driver.greeted", True)
+        frames_settled(bench)
+        bench.shot(f"09_{figures.split(',')[-1].strip().replace(' ', '_')}", ".ikteach-scene")
+    assert bench.kernel("bench.status.wrong") == ""
+
+
+def test_an_error_is_told_once_and_the_session_goes_on(bench: Notebook) -> None:
+    bench.kernel("None", "bench.session.methods['sdls'] = lambda J, e: J[0] * float('nan')")
+    press(bench, "Play") if not bench.kernel("bench.playing") else None
+    alert = bench.page.locator(".ikteach-status [role=alert]:not(:empty)").first
+    alert.wait_for(timeout=READY)
+    assert "not finite" in alert.inner_text()
+    bench.kernel("None", "from ikteach import sdls\nbench.session.use('sdls', sdls)")
+    press(bench, "Play")
+    frames(bench, 5)
+    settle(bench, "bench.status.wrong", "")
+
+
+def test_quit_stops_every_loop_and_says_so(bench: Notebook) -> None:
+    press(bench, "Quit")
+    settle(bench, LOOPS, 0)
+    said = bench.page.locator(".ikteach-status [role=status]", has_text="The workbench has ended")
+    said.wait_for(timeout=READY)
+    bench.shot("09_quit")
+    bench.run_cell("bench = Workbench()")
+    bench.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
+    frames(bench, 5)
+    assert bench.kernel(LOOPS) == 1
