@@ -1,11 +1,10 @@
 """Every notebook, in both builds, runs in a fresh kernel, forwards and then backwards, cleanly."""
 
 import ast
+import asyncio
 import copy
 import json
 import os
-from collections.abc import Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -23,37 +22,53 @@ def test_there_are_notebooks() -> None:
     assert NOTEBOOKS
 
 
-def run(path: Path, build: str, folder: Path) -> Any:
-    """The notebook of that build, run; a student's is run once more from its end to its start."""
+def built(path: Path, build: str) -> Any:
+    """The notebook of that build; a student's goes on from its end back to its start."""
     notebook = builds.clean(nbformat.read(path, as_version=4))
     if build == "instructor":
-        notebook = builds.with_solutions(notebook)
-    else:
-        again = copy.deepcopy([c for c in notebook.cells if c.cell_type == "code"])
-        for cell in again:
-            cell.id += "-again"
-        notebook.cells += again[::-1]
-    resources = {"metadata": {"path": str(folder)}}
-    NotebookClient(notebook, timeout=60, resources=resources).execute()
+        return builds.with_solutions(notebook)
+    again = copy.deepcopy([cell for cell in notebook.cells if cell.cell_type == "code"])
+    for cell in again:
+        cell.id += "-again"
+    notebook.cells += again[::-1]
     return notebook
+
+
+Run = tuple[Path, str]
 
 
 @pytest.fixture(scope="module")
 def runs(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[dict[tuple[Path, str], Future[Any]]]:
-    """What is asked for of each notebook and build, run two at a time."""
+) -> dict[Run, Any]:
+    """What is asked for of each notebook and build: the notebook as it was run, or what went wrong.
+
+    Two run at a time.
+    """
     wanted = [item.callspec.params for item in request.session.items if hasattr(item, "callspec")]
     pairs = dict.fromkeys((p["path"], p["build"]) for p in wanted if {"path", "build"} <= set(p))
-    with ThreadPoolExecutor(2) as pool:
-        yield {pair: pool.submit(run, *pair, tmp_path_factory.mktemp("run")) for pair in pairs}
+    places = asyncio.Semaphore(2)
+
+    async def run(pair: Run) -> Any:
+        resources = {"metadata": {"path": str(tmp_path_factory.mktemp("run"))}}
+        notebook = built(*pair)
+        async with places:
+            await NotebookClient(notebook, timeout=60, resources=resources).async_execute()
+        return notebook
+
+    async def run_all() -> list[Any]:
+        return await asyncio.gather(*map(run, pairs), return_exceptions=True)
+
+    return dict(zip(pairs, asyncio.run(run_all()), strict=True))
 
 
 @pytest.mark.filterwarnings("ignore:Proactor event loop:RuntimeWarning")
 @pytest.mark.parametrize("build", ["student", "instructor"])
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_runs_without_errors_or_warnings(path: Path, build: str, runs: Any) -> None:
-    notebook = runs[path, build].result()
+    notebook = runs[path, build]
+    if isinstance(notebook, BaseException):
+        raise notebook
     for cell in notebook.cells:
         said = json.dumps(cell.get("outputs", []), ensure_ascii=False)
         for output in cell.get("outputs", []):

@@ -26,9 +26,10 @@ import numpy as np
 
 from ikteach.course import record
 from ikteach.course.deadline import TooLongError, deadline
-from ikteach.course.notice import box, paragraph
+from ikteach.course.notice import LOOK, Mood, box, paragraph
 from ikteach.names import unknown
 
+NOT_YET = "Not yet"
 SECONDS = 5.0  # what a check may take in all
 
 Shape = tuple[int, ...]
@@ -52,15 +53,20 @@ class Verdict:
     sentence: str
     hint: str = ""
 
+    @property
+    def mood(self) -> Mood:
+        """How to set it: an exercise that was not begun is no failure."""
+        return "good" if self.passed else "plain" if self.sentence.startswith(NOT_YET) else "bad"
+
     def __str__(self) -> str:
         hint = f"\n  Hint: {self.hint}" if self.hint else ""
-        return f"{'✓' if self.passed else '✗'} {self.sentence}{hint}"
+        return f"{LOOK[self.mood][0]} {self.sentence}{hint}"
 
     __repr__ = __str__
 
     def _repr_html_(self) -> str:
         hint = f"<br><b>Hint:</b> {paragraph(self.hint)}" if self.hint else ""
-        return box("good" if self.passed else "bad", paragraph(self.sentence) + hint)
+        return box(self.mood, paragraph(self.sentence) + hint)
 
 
 class Exercise(NamedTuple):
@@ -115,7 +121,7 @@ def check(key: str, answer: Any) -> Verdict:
     Each failure in a row gives the next hint. LookupError for an unknown key.
     """
     verdict = judge(find(key), answer)
-    if not verdict.passed and not verdict.sentence.startswith("Not yet"):
+    if verdict.mood == "bad":
         hints = EXERCISES[key].hints
         hint = hints[min(_failures[key], len(hints) - 1)] if hints else ""
         _failures[key] += 1
@@ -151,7 +157,7 @@ def judge(task: Exercise, answer: Any) -> Verdict:
                 raise NotYetError
             task.checker(_value(task, answer) if task.value else _function(task, answer, name))
     except NotYetError as error:
-        return Verdict(task.key, False, f"Not yet: {error or 'write your answer first.'}")
+        return Verdict(task.key, False, f"{NOT_YET}: {error or 'write your answer first.'}")
     except WrongError as wrong:
         return Verdict(task.key, False, str(wrong))
     except TooLongError:
