@@ -125,7 +125,7 @@ def claims(
     times: Mapping[str, float],
     arrivals: Mapping[str, float],
 ) -> pd.DataFrame:
-    """Sentences about the methods, each held against the numbers: source, says, measured by, holds, numbers.
+    """Sentences about the methods, each held against the numbers: a row for each.
 
     table     of `trials`
     reach     {motion: (k,)} of `reachable_throughout`, in the thesis's order: feet, then hands
