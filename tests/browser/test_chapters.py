@@ -24,14 +24,19 @@ class Chapter(NamedTuple):
 
     notebook: str
     cell: str
-    slot: str
+    figure: str
     picture: str
 
 
 CHAPTERS = [
-    Chapter("00_figure.ipynb", "Poser(figures.human())", "poser", CANVAS),
-    Chapter("01_jacobian.ipynb", "ColumnPoser(figures.human())", "columns", CANVAS),
-    Chapter("02_singularity.ipynb", "BendBench()", "bend", CANVAS),
+    Chapter("00_figure.ipynb", "Poser(figures.human())", "_B._living['poser']", CANVAS),
+    Chapter("01_jacobian.ipynb", "ColumnPoser(figures.human())", "_B._living['columns']", CANVAS),
+    Chapter("02_singularity.ipynb", "BendBench()", "_B._living['bend']", CANVAS),
+    Chapter("03_transpose.ipynb", "bench = slope_bench()", "bench", PICTURE),
+    Chapter("04_pseudoinverse.ipynb", "player = CapPlayer()", "player", CANVAS),
+    Chapter("05_dls.ipynb", "bench = tradeoff_bench()", "bench", PICTURE),
+    Chapter("06_sdls.ipynb", "bench = spectrum_bench()", "bench", PICTURE),
+    Chapter("08_comparison.ipynb", "race = Race()", "race", CANVAS),
 ]
 IN_KERNEL = "from ikteach.view.bench import Bench as _B"
 
@@ -41,7 +46,7 @@ def test_every_slider_to_both_ends(open_notebook: Any, chapter: Chapter) -> None
     notebook = open_notebook(chapter.notebook)
     notebook.run_cell(chapter.cell)
     notebook.page.wait_for_selector(chapter.picture, timeout=READY)
-    figure = f"_B._living['{chapter.slot}']"
+    figure = chapter.figure
     ends = notebook.kernel(
         f"{{name: [c.value, c.min, c.max] for name, c in {figure}.controls.items()"
         " if hasattr(c, 'min')}",
