@@ -32,7 +32,7 @@ class CapPlayer(widgets.VBox):  # type: ignore[misc]
 
     _living: ClassVar["CapPlayer | None"] = None
 
-    def __init__(self, degrees: float = 5.0, x_hand: float = 1.2) -> None:
+    def __init__(self, degrees: float = 5.0, x_hand: float = 0.9) -> None:
         if CapPlayer._living is not None:
             CapPlayer._living.close()
         CapPlayer._living = self

@@ -48,7 +48,7 @@ class Race(widgets.VBox):  # type: ignore[misc]
         Race._living = self
         self.session = Session(methods=runners(EQUAL, degrees))
         tree, effectors = self.session.tree, self.session.effectors
-        self.scene = Scene(tree, effectors, names=list(SOLVERS), width=960, height=420)
+        self.scene = Scene(tree, effectors, names=list(SOLVERS), apart=1.9, width=960, height=400)
         self.playing, self._changes = True, 0
         self._waiting: list[Callable[[], None]] = []
         self._task: asyncio.Task[None] | None = None

@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from ikteach.solvers.sdls import lengths
-
 
 # %% 06.gamma
+from ikteach.solvers.sdls import lengths  # noqa: E402
+
+
 def gamma(J, max_angle):
     U, sigma, Vt = np.linalg.svd(J, full_matrices=False)
     N = lengths(U).sum(axis=0)

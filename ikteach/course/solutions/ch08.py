@@ -2,8 +2,6 @@
 
 import numpy as np
 
-from ikteach import figures, gait, study
-
 
 # %% 08.order
 def order(table):
@@ -11,6 +9,9 @@ def order(table):
 
 
 # %% 08.experiment
+from ikteach import figures, gait, study  # noqa: E402
+
+
 def experiment():
     targets = gait.running(gait.running.clock(30))
     log = study.compare(*figures.human(), targets, max_step=np.radians(10))
