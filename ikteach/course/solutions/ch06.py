@@ -4,10 +4,9 @@ import numpy as np
 
 
 # %% 06.gamma
-from ikteach.solvers.sdls import lengths  # noqa: E402
-
-
 def gamma(J, max_angle):
+    from ikteach.solvers.sdls import lengths
+
     U, sigma, Vt = np.linalg.svd(J, full_matrices=False)
     N = lengths(U).sum(axis=0)
     M = abs(Vt) @ lengths(J).sum(axis=0) / sigma

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from ikteach import figures, gait
+
 
 # %% 08.order
 def order(table):
@@ -9,10 +11,9 @@ def order(table):
 
 
 # %% 08.experiment
-from ikteach import figures, gait, study  # noqa: E402
-
-
 def experiment():
+    from ikteach import study
+
     targets = gait.running(gait.running.clock(30))
     log = study.compare(*figures.human(), targets, max_step=np.radians(10))
     return log, log.groupby("method", observed=True)["error"].mean().idxmin()
