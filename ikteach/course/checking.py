@@ -157,7 +157,7 @@ def judge(task: Exercise, answer: Any) -> Verdict:
                 raise NotYetError
             task.checker(_value(task, answer) if task.value else _function(task, answer, name))
     except NotYetError as error:
-        return Verdict(task.key, False, f"{NOT_YET}: {error or 'write your answer first.'}")
+        return Verdict(task.key, False, f"{NOT_YET}: {str(error) or 'write your answer first.'}")
     except WrongError as wrong:
         return Verdict(task.key, False, str(wrong))
     except TooLongError:

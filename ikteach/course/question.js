@@ -95,6 +95,12 @@ function render({ model, el }) {
     button,
     status,
   );
+  form.onkeydown = (event) => {
+    if (event.key !== "Enter" || event.target.tagName !== "INPUT") return;
+    event.preventDefault();
+    event.stopPropagation();
+    form.requestSubmit();
+  };
   form.onsubmit = (event) => {
     event.preventDefault();
     const answer = fields.read();

@@ -90,7 +90,9 @@ def test_a_stub_is_not_yet_an_answer(answer: Any) -> None:
     for _ in range(3):
         verdict = check("xx.double", answer)
         assert not verdict.passed
-        assert verdict.sentence.startswith("Not yet")
+        assert verdict.sentence.startswith("Not yet: ")
+        assert verdict.sentence.endswith((".", "?", "`"))
+        assert str(verdict).startswith("→")
         assert verdict.hint == ""
 
 
