@@ -10,10 +10,11 @@ import numpy as np
 import pandas as pd
 
 from ikteach.arrays import ArrayLike, Mask
-from ikteach.body import Effectors, Tree
+from ikteach.body import Effectors, Tree, forward, jacobian, locate
 from ikteach.motion import Track, reachable, track
 from ikteach.motion.experiment import reversals
-from ikteach.solvers import SOLVERS, Solver
+from ikteach.solvers import SOLVERS, Solver, sdls
+from ikteach.solvers.response import directions, factors
 
 MEASURES = ["mean", "median", "p95", "max", "jitter", "capped", "held", "smallest_sigma"]
 
@@ -197,6 +198,26 @@ def overview(tracks: Mapping[str, Track], name: str = "method") -> pd.DataFrame:
     """
     rows = [measures(run, ()) for run in tracks.values()]
     return pd.DataFrame(rows, index=pd.Index(list(tracks), name=name))
+
+
+def by_direction(
+    tree: Tree, effectors: Effectors, theta: ArrayLike, targets: ArrayLike, **options: Any
+) -> pd.DataFrame:
+    """What SDLS makes of each singular direction i at a pose θ (n,) with targets (k, 3).
+
+    σ [m/rad], asked u_iᵀe [m], N, M, γ [rad], the factor f that SDLS takes [rad/m], and the share
+    of 1/σ that it leaves; no number where nothing is asked. `options` go to `sdls`.
+    """
+    frames = forward(tree, theta)
+    e = np.ravel(np.asarray(targets) - locate(frames, effectors))
+    J = jacobian(tree, frames, effectors)
+    max_angle = {k: v for k, v in options.items() if k == "max_angle"}
+    found, f = directions(J, e, **max_angle), factors(J, e, sdls(J, e, **options))
+    columns = {
+        "σ": found.sigma, "asked": found.alpha, "N": found.N, "M": found.M, "γ": found.gamma,
+        "f": f, "share": f * found.sigma,
+    }  # fmt: skip
+    return pd.DataFrame(columns, index=pd.RangeIndex(1, len(f) + 1, name="i"))
 
 
 def measures(run: Track, member: tuple[Any, ...]) -> dict[str, float]:

@@ -19,6 +19,7 @@ from ikteach.motion import gait, per_chain, reachable, step, track, whole
 from ikteach.motion.reachable import nearest
 from ikteach.motion.step import clamp_error
 from ikteach.solvers import adjugate, cramer, determinant, ellipsoid, independence, sdls
+from ikteach.solvers.response import Directions, directions, factors, filtered
 from ikteach.solvers.sdls import hard, lengths, soft
 
 TREE, EFFECTORS = figures.human()
@@ -62,6 +63,8 @@ PROMISES = [  # function, its promise, how to run it
     (determinant, "(...)", lambda g: determinant(g.J[..., :3, 2:5])),
     (independence, "(...)", lambda g: independence(g.J[..., :3, 2:5])),
     (hard, "(..., n)", lambda g: hard(g.theta, g.T)),
+    (factors, "(..., r)", lambda g: factors(g.J, g.e, g.theta)),
+    (filtered, "(..., r)", lambda g: filtered(g.e)),
     (lengths, "(..., k, r)", lambda g: lengths(np.ones((*g.batch, 12, 12)))),
     (clamp_error, "(..., k, 3)", lambda g: clamp_error(g.targets, 0.1)),
     (reachable, "(..., k)", lambda g: reachable(TREE, EFFECTORS, g.targets)),
@@ -89,6 +92,7 @@ RECORDS = [  # a record, its promises by field, how to make one
     (solvers.Ellipsoid, lambda g: ellipsoid(g.J)),
     (Step, lambda g: step(TREE, g.theta, EFFECTORS, g.targets, "dls", max_step=0.1)),
     (Track, lambda g: track(TREE, EFFECTORS, g.walk, sdls, theta=g.theta)),
+    (Directions, lambda g: directions(g.J, g.e)),
     (Tree, lambda g: TREE),
     (Effectors, lambda g: EFFECTORS),
     (Plan, lambda g: TREE.plan),

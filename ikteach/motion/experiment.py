@@ -129,6 +129,29 @@ def iterations(
     return count
 
 
+def arrivals(
+    tree: Tree,
+    effectors: Effectors,
+    solver: Solver | str,
+    *,
+    poses: int = 20,
+    most: int = 300,
+    spread: float = 0.3,
+    within: float = 0.01,
+    **options: Any,
+) -> Array:
+    """`iterations` from so many poses to targets that as many others of the body meet, (poses,).
+
+    All targets can be reached. The poses are the same at every call.
+    """
+    theta = starts(tree, poses + 1, spread=spread)[1:]
+    other = starts(tree, poses + 1, spread=spread, seed=1)[1:]
+    goals = locate(forward(tree, other), effectors)
+    return iterations(
+        tree, effectors, goals, solver, theta=theta, most=most, within=within, **options
+    )
+
+
 def step_times(
     tree: Tree,
     effectors: Effectors,

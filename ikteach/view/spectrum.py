@@ -90,9 +90,10 @@ class Spectrum:
         self._draw(frames.positions, s, found.U[:, i].reshape(-1, 3))
         pinv, damped, selected = (f[i] for f in answers)
         words = (
-            f"Direction {direction} of {COUNT} after {steps} steps of SDLS: σ = {found.sigma[i]:.4f}"
-            f" m/rad, error along it {found.alpha[i]:.3f} m. N = {found.N[i]:.3f}, "
-            f"M = {found.M[i]:.3f}, γ = {np.degrees(found.gamma[i]):.2f}°. Answers in rad/m: "
+            f"Direction {direction} of {COUNT} after {steps} steps of SDLS: "
+            f"σ = {found.sigma[i]:.4f} m/rad, error along it {found.alpha[i]:.3f} m. "
+            f"N = {found.N[i]:.3f}, M = {found.M[i]:.3f}, γ = {np.degrees(found.gamma[i]):.2f}°. "
+            f"Answers in rad/m: "
             f"1/σ is {pinv:.3f}, damped {damped:.3f}, SDLS takes {_number(selected)}."
         )
         return Shown(self._canvas.png(), words, f"<p>{words}</p>{_table(found, answers)}")

@@ -46,7 +46,7 @@ def projector(answer: Answer) -> None:
     "04.cap",
     returns=lambda dtheta, max_step, chains: dtheta.shape,
     hints=[
-        "For each number in `np.unique(chains)`: which joints have it, and what is the largest |Δθ|?",
+        "For each number in `np.unique(chains)`: which joints have it, and their largest |Δθ|?",
         "Multiply the joints of one chain by min(1, max_step / their largest |Δθ|).",
     ],
     seconds=20,

@@ -75,7 +75,7 @@ def bound(answer: Answer) -> None:
     "05.unit",
     returns=(),
     hints=[
-        "In centimetres both J and e are 100 times as large. Which λ leaves Δθ, an angle, as it was?",
+        "In centimetres J and e are 100 times as large. Which λ leaves Δθ, an angle, as it was?",
         "In JJᵀ + λ²I both terms must grow alike; and λ has the unit of σ, length per radian.",
     ],
 )

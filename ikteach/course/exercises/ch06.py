@@ -21,8 +21,8 @@ def jacobians() -> list[Array]:
     "06.gamma",
     returns=lambda J, max_angle: (min(J.shape),),
     hints=[
-        "N = lengths(U).sum(axis=0) and ρ = lengths(J).sum(axis=0): one length an effector, summed.",
-        "M_i = Σ_j |v_ji| ρ_j / σ_i. In arrays: `abs(Vt) @ rho / sigma`. Then γ = min(1, N/M) γ_max.",
+        "N = lengths(U).sum(axis=0), ρ = lengths(J).sum(axis=0): one length an effector, summed.",
+        "M_i = Σ_j |v_ji| ρ_j / σ_i. In arrays: `abs(Vt) @ rho / sigma`. γ = min(1, N/M) γ_max.",
     ],
 )
 def gamma(answer: Answer) -> None:
@@ -33,7 +33,7 @@ def gamma(answer: Answer) -> None:
             expect(found <= max_angle * (1 + 1e-12), "A bound is above γ_max: where is the min?")
             expect(
                 np.allclose(answer(100 * J, max_angle), found, rtol=1e-7, atol=1e-12),
-                "In centimetres the bounds are others, but they are angles: M must be divided by σ.",
+                "In centimetres the bounds change, but they are angles: divide M by σ.",
             )
             expect(
                 np.allclose(answer(J[:, ::-1], max_angle), found, rtol=1e-7, atol=1e-12),

@@ -84,8 +84,8 @@ def experiment(answer: Answer) -> None:
     methods = sorted(map(str, log["method"].unique()))
     expect(methods == sorted(SOLVERS), f"The log must hold all four methods; it holds {methods}.")
     expect(np.isfinite(log["error"]).all(), "The log has distances that are not numbers.")
-    parts = {m: part for m, part in log.groupby("method", observed=True)}
-    frames = {str(m): (len(part), part["time"].max()) for m, part in parts.items()}
+    parts = log.groupby("method", observed=True)
+    frames = {str(m): (len(part), part["time"].max()) for m, part in parts}
     expect(
         len(set(frames.values())) == 1,
         "The methods did not run for the same time on the same frames: that is no fair race.",

@@ -1,0 +1,134 @@
+"""The widgets of chapters 3 to 6 and 8, without a page: every control to both ends."""
+
+import io
+from typing import Any
+
+import ipywidgets as widgets
+import numpy as np
+import pandas as pd
+import pytest
+from PIL import Image
+
+from ikteach.view import charts
+from ikteach.view.bench import Bench, Shown, slider
+from ikteach.view.caps import CapPlayer
+from ikteach.view.race import OWN, Race
+from ikteach.view.slope import slope_bench
+from ikteach.view.spectrum import spectrum_bench
+from ikteach.view.tradeoff import tradeoff_bench
+
+BENCHES = [slope_bench, tradeoff_bench, spectrum_bench]
+
+
+def pixels(png: bytes) -> np.ndarray:
+    return np.asarray(Image.open(io.BytesIO(png)).convert("RGB")).astype(int)
+
+
+def ends(control: Any) -> list[Any]:
+    if isinstance(control, widgets.ToggleButtons):
+        return list(control.options)
+    logarithmic = isinstance(control, widgets.FloatLogSlider)
+    return [10.0**end if logarithmic else end for end in (control.min, control.max)]
+
+
+@pytest.mark.parametrize("make", BENCHES)
+def test_every_control_to_both_ends(make: Any) -> None:
+    bench = make()
+    pictures = set()
+    for control in bench.controls.values():
+        before = control.value
+        for end in ends(control):
+            control.value = end
+            assert bench._alert.value == ""
+            assert pixels(bench._picture.png).std() > 5
+            assert "nan" not in bench.words
+            pictures.add(bench._picture.png)
+        control.value = before
+    assert len(pictures) > len(bench.controls)
+    assert bench._repr_mimebundle_()["text/plain"] == bench.words
+    bench.close()
+
+
+def test_a_bench_tells_what_went_wrong_and_goes_on() -> None:
+    def show(x: float) -> Shown:
+        if x > 1:
+            raise ValueError("x is <too> large")
+        return Shown(b"png", f"x is {x:g}")
+
+    pressed: list[int] = []
+    x = slider("x", 0.5, 0.0, 2.0, 0.1)
+    bench = Bench(show, {"x": x}, slot="test", buttons={"Go": lambda: pressed.append(1)})
+    assert bench.words == "x is 0.5"
+    x.value = 2.0
+    assert "x is &lt;too&gt; large" in bench._alert.value
+    assert 'role="alert"' in bench._alert.value
+    x.value = 1.0
+    assert (bench._alert.value, bench.words) == ("", "x is 1")
+    bench.buttons["Go"].click()
+    assert pressed == [1]
+    other = Bench(show, {"x": slider("x", 0.0, 0.0, 2.0, 0.1)}, slot="test")
+    assert bench.comm is None
+    assert Bench._living["test"] is other
+    other.close()
+    assert "test" not in Bench._living
+
+
+def test_the_arm_steps_downhill_and_starts_again() -> None:
+    bench = slope_bench()
+    first = bench.words
+    for n in (1, 2, 3):
+        bench.buttons["Take the step"].click()
+        assert f"after {n} steps" in bench.words
+    bench.buttons["Start again"].click()
+    assert bench.words == first
+    bench.close()
+
+
+def test_the_cap_player_obeys() -> None:
+    player = CapPlayer()
+    session = player.player.session
+    for value in (0.5, 45.0):
+        player.cap.value = value
+        session.reset()
+        session.tick()
+        peak = abs(session.theta["each chain"] - session.tree.rest).max()
+        assert peak <= np.radians(value) + 1e-9
+    player.x_hand.value = 2.0
+    assert session.gait.x_hand == 2.0
+    second = CapPlayer()
+    assert player.comm is None
+    second.close()
+
+
+def test_the_race_obeys() -> None:
+    race = Race()
+    session = race.session
+    race.controls["degrees"].value = 1.0
+    session.tick()
+    for theta in session.theta.values():
+        assert abs(theta - session.tree.rest).max() <= np.radians(1) + 1e-9
+    race.controls["caps"].value = OWN
+    session.reset()
+    session.tick()
+    far = {name: abs(theta - session.tree.rest).max() for name, theta in session.theta.items()}
+    assert far["pseudoinverse"] <= np.radians(5) + 1e-9 < far["dls"]
+    race.controls["motion"].value = "running"
+    assert session.gait.name == "running"
+    assert race.controls["speed"].value == session.gait.speed
+    race.controls["speed"].value = 0.0
+    session.tick()
+    race._report()
+    assert "running, each author's caps" in race._words()
+    assert "sdls" in race._table.value
+    assert race._alert.value == ""
+    race.close()
+
+
+def test_charts_carry_their_numbers() -> None:
+    table = pd.DataFrame({"near": [3.0, 1.0], "calm": [2.0, 4.0]}, index=[0.1, 1.0])
+    drawn = charts.lines(table, title="Trade", xlabel="λ", ylabel="size", log="x")
+    assert "near from 3 to 1, least 1 at 1" in drawn.alt
+    bars = charts.bars(table, title="Trade", ylabel="size", spread=0.1 * table)
+    assert "0.1: near 3, calm 2; 1.0: near 1, calm 4" in bars.alt
+    for still in (drawn, bars):
+        assert pixels(still.png).std() > 5
