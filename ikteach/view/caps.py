@@ -1,6 +1,5 @@
 """Chapter 4's widget: a human whose hands cannot arrive, and three ways to cap its steps."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from math import radians
 from typing import Any, ClassVar
@@ -33,35 +32,37 @@ class CapPlayer(widgets.VBox):  # type: ignore[misc]
 
     _living: ClassVar["CapPlayer | None"] = None
 
-    def __init__(self, degrees: float = 5.0, x_hand: float = 1.2) -> None:
+    def __init__(self, degrees: float = 5.0, x_hand: float = 0.9) -> None:
         if CapPlayer._living is not None:
             CapPlayer._living.close()
         CapPlayer._living = self
         start = replace(gait.walking, x_hand=x_hand)
         self.player = GaitPlayer(rules(degrees), slot="caps", gait=start, method="whole step")
         self.player.controls.method.description = "Cap"
-        self.cap = slider("cap [° a step]", degrees, 0.5, 45.0, 0.5)
-        self.x_hand = slider("hands to the side [m]", x_hand, 0.3, 2.0, 0.05)
-        self.cap.observe(self._obeyed(lambda value: self._set(rules(value))), "value")
-        self.x_hand.observe(
-            self._obeyed(lambda value: self.player.session.change(x_hand=value)), "value"
-        )
-        super().__init__([self.cap, self.x_hand, self.player])
+        self.controls = {
+            "cap": slider("cap [° a step]", degrees, 0.5, 45.0, 0.5),
+            "x_hand": slider("hands to the side [m]", x_hand, 0.3, 2.0, 0.05),
+        }
+        self._alert = self.player._alert
+        for name, control in self.controls.items():
+            obey = self.player._guarded(lambda change, name=name: self._obey(name, change["new"]))
+            control.observe(obey, "value")
+        super().__init__([*self.controls.values(), self.player])
 
     def close(self) -> None:
         """Stop the loop and free the widgets."""
         if CapPlayer._living is self:
             CapPlayer._living = None
         self.player.close()
-        for widget in (self.cap, self.x_hand):
+        for widget in self.controls.values():
             widget.close()
         super().close()
 
-    def _set(self, methods: dict[str, Solver]) -> None:
-        self.player.session.methods.update(methods)  # the same names: a tick under way may go on
-
-    def _obeyed(self, act: Callable[[float], None]) -> Callable[[Any], None]:
-        return lambda change: act(change["new"])
+    def _obey(self, name: str, value: float) -> None:
+        if name == "cap":  # the same names as before: a tick under way may go on
+            self.player.session.methods.update(rules(value))
+        else:
+            self.player.session.change(x_hand=value)
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
         """The live widget, and beside it a still for places without a kernel."""

@@ -48,7 +48,7 @@ class Race(widgets.VBox):  # type: ignore[misc]
         Race._living = self
         self.session = Session(methods=runners(EQUAL, degrees))
         tree, effectors = self.session.tree, self.session.effectors
-        self.scene = Scene(tree, effectors, names=list(SOLVERS), width=960, height=420)
+        self.scene = Scene(tree, effectors, names=list(SOLVERS), apart=1.9, width=960, height=400)
         self.playing, self._changes = True, 0
         self._waiting: list[Callable[[], None]] = []
         self._task: asyncio.Task[None] | None = None
@@ -207,7 +207,7 @@ class Race(widgets.VBox):  # type: ignore[misc]
 
 def _table(to_html: Callable[..., str]) -> str:
     return (
-        "<p>Last 10 s: distance to target in cm, mean and worst; jitter (mean ‖Δ²θ‖) in degrees; "
+        "<p>On the left above: the effectors of dls. Last 10 s: distance to target in cm, mean and worst; jitter (mean ‖Δ²θ‖) in degrees; "
         "joints held at limits.</p>"
         + to_html(float_format="{:.2f}".format, border=0, classes="ikteach-table")
     )

@@ -51,7 +51,7 @@ class Spectrum:
             for k, (label, c, h) in enumerate(looks)
         ]
         (self._mark,) = bars.plot([], [], "v", color="black", ms=9, label="direction drawn")
-        bars.legend(loc="upper left", fontsize=8, ncols=4)
+        bars.legend(loc="upper left", fontsize=8, ncols=2)
         self._views = [(front, 0, "from the front", "x [m]"), (side, 2, "left side", "z [m]")]
         moving = [rod for group in self._bars for rod in group] + [self._mark]
         self._bones, self._arrows = [], []
@@ -135,10 +135,10 @@ def _number(value: float) -> str:
 def spectrum_bench() -> Bench:
     """The bench of chapter 6."""
     controls = {
-        "direction": slider("direction drawn", 1, 1, COUNT, 1),
+        "direction": slider("direction drawn", COUNT, 1, COUNT, 1),
         "damping": log_slider("damping λ of DLS", 0.1, -3, 0.5),
         "max_angle": slider("γ max of SDLS [°]", 45.0, 1.0, 90.0, 1.0),
-        "steps": slider("steps of SDLS taken", 0, 0, 20, 1),
+        "steps": slider("steps of SDLS taken", 5, 0, 20, 1),
         "phase": slider("phase of the walk", 0.25, 0.0, 1.0, 0.05),
     }
     return Bench(Spectrum().show, controls, slot="spectrum")

@@ -24,14 +24,21 @@ class Chapter(NamedTuple):
 
     notebook: str
     cell: str
-    slot: str
+    figure: str
     picture: str
 
 
 CHAPTERS = [
-    Chapter("00_figure.ipynb", "Poser(figures.human())", "poser", CANVAS),
-    Chapter("01_jacobian.ipynb", "ColumnPoser(figures.human())", "columns", CANVAS),
-    Chapter("02_singularity.ipynb", "BendBench()", "bend", CANVAS),
+    Chapter("00_figure.ipynb", "Poser(figures.human())", "Bench._living['poser']", CANVAS),
+    Chapter(
+        "01_jacobian.ipynb", "ColumnPoser(figures.human())", "Bench._living['columns']", CANVAS
+    ),
+    Chapter("02_singularity.ipynb", "BendBench()", "Bench._living['bend']", CANVAS),
+    Chapter("03_transpose.ipynb", "bench = slope_bench()", "bench", PICTURE),
+    Chapter("04_pseudoinverse.ipynb", "player = CapPlayer()", "player", CANVAS),
+    Chapter("05_dls.ipynb", "bench = tradeoff_bench()", "bench", PICTURE),
+    Chapter("06_sdls.ipynb", "bench = spectrum_bench()", "bench", PICTURE),
+    Chapter("08_comparison.ipynb", "race = Race()", "race", CANVAS),
 ]
 ENDS = """
 from ikteach.view.bench import Bench
@@ -69,7 +76,7 @@ def test_every_slider_to_both_ends(open_notebook: Any, chapter: Chapter) -> None
     notebook = open_notebook(chapter.notebook)
     notebook.run_cell(chapter.cell)
     notebook.page.wait_for_selector(chapter.picture, timeout=READY)
-    figure = f"Bench._living['{chapter.slot}']"
+    figure = chapter.figure
     wait_for_picture(notebook, chapter)
     notebook.shot(f"{chapter.notebook[:2]}_live")
     wrong, pictures, words = notebook.kernel(f"to_the_ends({figure})", ENDS)

@@ -88,12 +88,12 @@ def test_the_cap_player_obeys() -> None:
     player = CapPlayer()
     session = player.player.session
     for value in (0.5, 45.0):
-        player.cap.value = value
+        player.controls["cap"].value = value
         session.reset()
         session.tick()
         peak = abs(session.theta["each chain"] - session.tree.rest).max()
         assert peak <= np.radians(value) + 1e-9
-    player.x_hand.value = 2.0
+    player.controls["x_hand"].value = 2.0
     assert session.gait.x_hand == 2.0
     second = CapPlayer()
     assert player.comm is None

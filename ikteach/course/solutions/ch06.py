@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from ikteach.solvers.sdls import lengths
-
 
 # %% 06.gamma
 def gamma(J, max_angle):
+    from ikteach.solvers.sdls import lengths
+
     U, sigma, Vt = np.linalg.svd(J, full_matrices=False)
     N = lengths(U).sum(axis=0)
     M = abs(Vt) @ lengths(J).sum(axis=0) / sigma

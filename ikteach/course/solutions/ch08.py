@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ikteach import figures, gait, study
+from ikteach import figures, gait
 
 
 # %% 08.order
@@ -12,6 +12,8 @@ def order(table):
 
 # %% 08.experiment
 def experiment():
+    from ikteach import study
+
     targets = gait.running(gait.running.clock(30))
     log = study.compare(*figures.human(), targets, max_step=np.radians(10))
     return log, log.groupby("method", observed=True)["error"].mean().idxmin()

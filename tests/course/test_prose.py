@@ -1,0 +1,72 @@
+"""What the prose of chapters 3 to 6 and 8 says without computing it there."""
+
+from functools import partial
+from math import degrees, pi, radians
+
+import numpy as np
+import pytest
+
+from ikteach import dls, figures, forward, gait, jacobian, pseudoinverse, track, transpose
+from ikteach.motion import BUSS_CAPS, clip, hold, per_chain, whole
+from ikteach.motion.experiment import arrivals
+from ikteach.solvers import SOLVERS
+
+ARM, HUMAN = figures.planar_arm(3), figures.human()
+CYCLE = gait.walking.at(np.linspace(0, 2 * np.pi, 34, endpoint=False))
+WALK = np.tile(CYCLE, (3, 1, 1))
+
+
+@pytest.mark.parametrize("body", [ARM, HUMAN], ids=["arm", "human"])
+def test_03_a_shorter_step_is_the_better_habit(body):
+    half, best = (arrivals(*body, partial(transpose, gain=gain), poses=20) for gain in (0.5, 1))
+    assert np.median(half) < np.median(best)
+
+
+def test_03_steps_with_the_best_alpha_come_to_stand_at_right_angles():
+    goal = np.tile([[0.5, 2.2, 0.0]], (12, 1, 1))
+    turn = np.diff(track(*ARM, goal, transpose, theta=[0.9, -0.7, -0.6]).theta, axis=0)
+    turn /= np.linalg.norm(turn, axis=1, keepdims=True)
+    assert abs(np.vecdot(turn[1:], turn[:-1]))[-4:].max() < 0.1
+
+
+def test_04_caps():
+    bound = radians(5)
+    free = track(*HUMAN, WALK, pseudoinverse)
+    as_one = track(*HUMAN, WALK, pseudoinverse, max_step=bound, cap=whole)
+    apart = track(*HUMAN, WALK, pseudoinverse, max_step=bound, cap=per_chain)
+    feet = [run.error[34:, :2].mean() for run in (free, apart, as_one)]
+    assert feet[2] > 20 * max(feet[:2])
+    assert free.error[:, 2:].mean() > 1.1 * as_one.error[:, 2:].mean()
+    assert free.jitter.mean() > 3 * as_one.jitter.mean()
+
+
+def test_04_the_step_grows_like_one_over_the_bend_and_then_is_none():
+    tree, hand = ARM
+    bends = np.array([[0.01], [0.02]])
+    J = jacobian(tree, forward(tree, bends * [0.5, -1, 0.5]), hand)
+    inward = np.array([-0.1, 0, 0])
+    sizes = np.linalg.norm(pseudoinverse(J, inward, cutoff=0), axis=1)
+    assert sizes[0] / sizes[1] == pytest.approx(2, rel=0.01)
+    assert np.linalg.norm(pseudoinverse(J[:1] * 1.0, inward), axis=1) < 1e-3 * sizes[0]
+
+
+def test_04_holding_joints_is_quicker_than_clipping_them():
+    counts = [
+        np.median(arrivals(*HUMAN, pseudoinverse, poses=40, most=200, spread=0.6, limits=rule))
+        for rule in (clip, hold)
+    ]
+    assert counts[1] < counts[0]
+
+
+def test_05_no_damping_moves_a_straight_arm_inward():
+    tree, hand = ARM
+    J = jacobian(tree, forward(tree, tree.rest), hand)
+    for damping in (0.001, 0.1, 10.0):
+        assert not dls(J, np.array([-1.0, 0, 0]), damping=damping).any()
+
+
+def test_06_and_08_constants():
+    assert round(degrees(4 / pi)) == 73
+    caps = {name: cap and round(degrees(cap)) for name, cap in BUSS_CAPS.items()}
+    assert caps == {"transpose": 30, "pseudoinverse": 5, "dls": 45, "sdls": None}
+    assert list(SOLVERS) == list(caps)
