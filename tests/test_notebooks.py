@@ -10,9 +10,9 @@ from typing import Any
 
 import nbformat
 import pytest
-from nbclient import NotebookClient
 
 from ikteach.course import builds
+from ikteach.course.pages import runner
 
 NOTEBOOKS = sorted((Path(__file__).parents[1] / "notebooks").glob("*.ipynb"))
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -50,11 +50,12 @@ def runs(
     places = asyncio.Semaphore(2)
 
     async def run(pair: Run) -> Any:
-        resources = {"metadata": {"path": str(tmp_path_factory.mktemp("run"))}}
-        notebook = built(*pair)
+        folder = tmp_path_factory.mktemp("run")
         async with places:
-            await NotebookClient(notebook, timeout=60, resources=resources).async_execute()
-        return notebook
+            try:
+                return await runner(built(*pair), folder, timeout=60).async_execute()
+            except RuntimeError:  # the kernel did not come up: another one took its port
+                return await runner(built(*pair), folder, timeout=60).async_execute()
 
     async def run_all() -> list[Any]:
         return await asyncio.gather(*map(run, pairs), return_exceptions=True)

@@ -53,19 +53,19 @@ class MathML(IPythonRenderer):
         return convert(rf"\begin{{{name}}}{body}\end{{{name}}}", display="block")
 
 
+def runner(notebook: Any, folder: Path, **options: Any) -> NotebookClient:
+    """What runs a notebook in a fresh kernel whose working directory is `folder`."""
+    resources = {"metadata": {"path": str(folder)}}
+    quiet = ["--log-level=ERROR"]  # not the news that a kernel listens on this machine
+    return NotebookClient(notebook, resources=resources, extra_arguments=quiet, **options)
+
+
 def page(path: Path, titles: Mapping[str, str]) -> str:
     """The page of the notebook at `path`, which is run in its own folder.
     nbclient's CellExecutionError if a cell fails.
     """
     notebook = nbformat.read(path, as_version=4)
-    client = NotebookClient(
-        notebook,
-        timeout=300,
-        resources={"metadata": {"path": path.parent}},
-        extra_arguments=["--log-level=ERROR"],
-        store_widget_state=False,
-    )
-    client.execute()
+    runner(notebook, path.parent, timeout=300, store_widget_state=False).execute()
     (path.parent / "predictions.json").unlink(missing_ok=True)
     for cell in notebook.cells:
         for output in cell.get("outputs", []):

@@ -153,7 +153,7 @@ def test_pages_ask_nothing_of_a_network(clone: Path, browser_alone: Any) -> None
     assert view.locator("math").count() == 2
     formula = view.locator("math[display=block]").bounding_box()
     assert formula["width"] > 60
-    assert view.get_by_text("this & that").is_visible()
+    assert view.get_by_text("this & that", exact=True).is_visible()
     assert all(url.startswith(("file:", "data:")) for url in asked)
     view.close()
 
