@@ -13,6 +13,7 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Index, Mask
 from ikteach.motion.packages import MIDDLE, NONE, PACKAGES, Body, backs_reach, both_reach
+from ikteach.motion.step import numbers
 from ikteach.motion.ways import (
     ARRIVED,
     MAX_STEP,
@@ -26,7 +27,6 @@ from ikteach.motion.ways import (
     hands,
     which,
 )
-from ikteach.motion.step import numbers
 
 ROOM = np.array([[-1.0, -1.0, -0.8], [1.0, 1.3, 1.2]])  # where a cursor can be [m]
 START = (-0.35, 0.25, 0.35)  # [m]; within reach of the right arm

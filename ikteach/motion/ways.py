@@ -5,7 +5,7 @@ One tick of a `Way` is, for the degrees of motion q with θ = C q and J of the h
     Δq = f(J, e / n) + rest
 
 where f is a method on the joints in use, n the parts that the error is divided into, and rest the
-way back to the rest pose by at most 1° a tick. How the sources differ is three functions or less.
+way back to the rest pose by at most 1° a tick. A way is a method with two rules around it.
 """
 
 from collections.abc import Callable
