@@ -2,5 +2,6 @@
 
 from ikteach.view.player import GaitPlayer
 from ikteach.view.scene import Scene
+from ikteach.view.still import StillScene
 
-__all__ = ["GaitPlayer", "Scene"]
+__all__ = ["GaitPlayer", "Scene", "StillScene"]

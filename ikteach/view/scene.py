@@ -1,88 +1,184 @@
-"""The scene: a solid figure, its targets and the floor, in pythreejs. It is told poses, no more."""
+"""The live scene: solid figures, targets, the floor and layers, in pythreejs. Told poses, no more.
+
+Every frame goes to the page as one message of the driver: a matrix for each thing that moves.
+"""
 
 from collections.abc import Sequence
+from math import radians, tan
 from typing import Any
 
 import ipywidgets as widgets
 import numpy as np
 import pythreejs as three
 
-from ikteach.arrays import Array
-from ikteach.body import Effectors, Frames, Tree, forward, locate
-from ikteach.body.rotation import quaternion_from_y, sticks, transforms
+from ikteach.arrays import Array, ArrayLike
+from ikteach.body import Effectors, Tree
+from ikteach.body.rotation import sticks, transforms
+from ikteach.names import unknown
+from ikteach.view import solids
+from ikteach.view.cameras import Cameras
 from ikteach.view.driver import Driver, rows
-from ikteach.view.skin import EFFECTOR_COLOURS, GREY, Ball, Limb, Part, skin_of
+from ikteach.view.overlays import MAKERS, Layer, effector_colour
+from ikteach.view.picture import Still
+from ikteach.view.skin import DARK, EFFECTOR_COLOURS, LIGHT, SHIRT, Part, skin_of
+from ikteach.view.solids import node
+from ikteach.view.stage import CAMERAS, FIELD, LAYERS, SQUARE, Stage
+from ikteach.view.still import StillScene
+
+__all__ = ["CAMERAS", "LAYERS", "Scene"]
 
 STILL = np.eye(3, 4)
-CAMERAS = {  # where from, seen from the pelvis
-    "three-quarter": (1.5, 0.35, 2.1),
-    "front": (0.0, 0.0, 2.7),
-    "side": (2.7, 0.0, 0.01),
-    "top": (0.0, 2.9, 0.05),
-}
-TILE = 0.5  # [m] a square of the floor
+UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0]])  # a floor turned into a wall
 
 
 class Scene:
-    """One figure with k targets. `widget` is what to display; `show` moves it.
+    """One or several figures with k targets each; a `stage.View`. `widget` is what to display.
+
+    names    one figure for each, with its name over its head (a lone figure needs none)
+    apart    how far they stand from each other [m]; 0 lays them over each other, in which case
+             they share the targets, and all but the first can be seen through
+    dark     light on dark, or dark on light
 
     Left targets are balls, right ones boxes, so that colour is not the only sign; a grey rod joins
-    each effector to its target.
+    each effector to its target. A figure in a plane stands before a wall of squares instead of on
+    a floor. The other figures wear the colours of `skin.EFFECTOR_COLOURS`, in their order.
     """
 
     def __init__(
-        self, tree: Tree, effectors: Effectors, *, width: int = 540, height: int = 480
-    ) -> None:
+        self, tree: Tree, effectors: Effectors, *, names: Sequence[str] = ("",),
+        apart: float | None = None, width: int = 540, height: int = 480, dark: bool = False,
+    ) -> None:  # fmt: skip
         self.tree, self.effectors = tree, effectors
-        self._ground, self._floor = _node(), _node()
-        self._joints = [_node() for _ in tree.names]
-        self._targets = [
-            _node(_target(name, EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)]))
+        self.stage = stage = Stage(tree, effectors, names, apart)
+        unit = stage.unit
+        self._grounds = [node() for _ in names]
+        self._floor = node([solids.grid(unit, dark)])
+        self._joints = [[node() for _ in tree.names] for _ in names]
+        shared = 1 if stage.overlaid else len(names)  # sets of targets
+        self.targets = [
+            node(solids.target(name, effector_colour(i), unit))
+            for _ in range(shared)
             for i, name in enumerate(effectors.names)
         ]
-        self._gaps = [_node(_rod()) for _ in effectors.names]
-        by_name = dict(zip(tree.names, self._joints, strict=True))
-        for part in skin_of(tree, effectors):
-            holder = self._ground if part.joint is None else by_name[part.joint]
-            holder.children = [*holder.children, *_solid(part)]
-        self._floor.children = [_grid()]
-        nodes = [self._ground, self._floor, *self._joints, *self._targets, *self._gaps]
+        gaps = [node(solids.gap(unit)) for _ in range(len(names) * len(effectors))]
+        for f in range(len(names)):
+            self._dress(f)
+        joints = [group for figure in self._joints for group in figure]
+        nodes = [*self._grounds, self._floor, *joints, *self.targets, *gaps]
 
+        aspect = width / height
+        scale = max(unit, stage.spread / (aspect * tan(radians(FIELD / 2)) * 2.7))
         self.camera = three.PerspectiveCamera(
-            position=CAMERAS["three-quarter"], fov=45, aspect=width / height, near=0.05, far=40
+            fov=FIELD, aspect=aspect, near=0.05 * unit, far=40 * max(scale, 1)
         )
-        self.scene = three.Scene(children=[*nodes, *_lights()], background="#f4f6f8")
+        self.scene = three.Scene(
+            children=[*nodes, *solids.lights()], background=DARK if dark else LIGHT
+        )
         self.renderer = three.Renderer(
             scene=self.scene, camera=self.camera, antialias=False, width=width, height=height,
             controls=[three.OrbitControls(controlling=self.camera)],
         )  # fmt: skip
+        self.cameras = Cameras(self.renderer, aspect, scale)
+        self.look_from(stage.side)
         self.driver = Driver(self.renderer, nodes)
+        self._made: dict[str, Layer] = {}  # in the order of their nodes in the driver
+        self._on: set[str] = set()
+        self._dark = dark
+        self._last: dict[str, Any] = {}
         self.widget = widgets.VBox([self.renderer, self.driver])
+        self.widget.add_class("ikteach-scene")
+
+    @property
+    def layers(self) -> dict[str, bool]:
+        """Which layers are drawn."""
+        return {name: name in self._on for name in LAYERS}
+
+    def switch(self, layer: str, on: bool = True) -> None:
+        """Draw a layer from the next `show` on, or do not; LookupError for an unknown name."""
+        if layer not in LAYERS:
+            raise LookupError(unknown("layer", layer, LAYERS))
+        if on and layer not in self._made:
+            self._make(layer)
+        if on != (layer in self._on):
+            self._on ^= {layer}
+            for thing in self._made[layer].things:
+                thing.visible = on
+            self.show(**self._last) if self._last else None
 
     def look_from(self, side: str) -> None:
-        """Put the camera to one of `CAMERAS`."""
-        self.camera.position = CAMERAS[side]
+        """Put the camera to one of `CAMERAS`, or to "plane": along −z."""
+        self.cameras.look_from(side)
+
+    @property
+    def dark(self) -> bool:
+        """Whether the background is dark; may be set."""
+        return self._dark
+
+    @dark.setter
+    def dark(self, on: bool) -> None:
+        if on != self._dark:
+            (before,) = self._floor.children
+            self._dark = on
+            self._floor.children = [solids.grid(self.stage.unit, on)]
+            self.scene.background = DARK if on else LIGHT
+            before.close()
 
     def show(
-        self, theta: Array, targets: Array, *, floor: float, advance: float = 0.0, change: int = 0
-    ) -> None:
-        """Draw the pose θ (n,) and targets (k, 3) over a floor at height `floor` [m].
+        self, theta: Array, targets: Array, *, floor: float | None = None, advance: float = 0.0,
+        change: int = 0, effector: int = 0, columns: ArrayLike | None = None,
+        ellipsoid: tuple[ArrayLike, ArrayLike] | None = None,
+        reach: Sequence[tuple[ArrayLike, float, float]] = (),
+    ) -> None:  # fmt: skip
+        """Draw poses and targets, and what the layers need; see `stage.View.show`."""
+        stage = self.stage
+        now = stage.now(theta, targets, floor, advance, effector, columns, ellipsoid, reach)
+        places = stage.places[:, None]
+        at = now.targets + places
+        marks = at[: len(self.targets) // len(self.effectors)].reshape(-1, 3)
+        upright = np.broadcast_to(np.eye(3), (len(marks), 3, 3))
+        matrices = [
+            transforms(np.broadcast_to(np.eye(3), (len(stage), 3, 3)), stage.places),
+            self._ground(now.floor, advance),
+            transforms(now.orientations, now.positions + places),
+            transforms(upright, marks),
+            sticks(now.effectors + places, at),
+        ]
+        for name, layer in self._made.items():
+            moved = layer.place(now) if name in self._on else np.zeros((len(layer.nodes), 3, 4))
+            matrices.append(moved)
+        self._last = {
+            "theta": theta, "targets": targets, "floor": floor, "advance": advance,
+            "change": change, "effector": effector, "columns": columns, "ellipsoid": ellipsoid,
+            "reach": reach,
+        }  # fmt: skip
+        self.driver.show(rows(*matrices), change)
 
-        `advance` [m] is how far the figure has gone: the floor glides back under it.
-        """
-        frames: Frames = forward(self.tree, theta)
-        floor_at = STILL + [[0, 0, 0, 0], [0, 0, 0, floor], [0, 0, 0, -(advance % TILE)]]
-        at = np.broadcast_to(np.eye(3), (len(targets), 3, 3))
-        self.driver.show(
-            rows(
-                STILL,
-                floor_at,
-                transforms(frames.orientations, frames.positions),
-                transforms(at, targets),
-                sticks(locate(frames, self.effectors), targets),
-            ),
-            change,
-        )
+    def clear(self) -> None:
+        """Forget trails and footprints."""
+        for layer in self._made.values():
+            layer.clear()
+
+    def mount(self, *more: widgets.Widget) -> None:
+        """Have the page show the driver, with all it moves, and these widgets under the picture."""
+        kept = [child for child in self.widget.children if child is not self.driver]
+        # The driver reads what it moves when it is put into the page: take it out, and in again.
+        self.widget.children = [*kept, *more]
+        self.widget.children = [*kept, *more, self.driver]
+
+    def still(self) -> Still:
+        """What was shown last as a picture, which needs no kernel to be seen."""
+        picture = StillScene(
+            self.tree, self.effectors, names=self.stage.names, apart=self.stage.apart,
+            dark=self._dark, width=self.renderer.width, height=self.renderer.height,
+        )  # fmt: skip
+        try:
+            for name in self._on:
+                picture.switch(name)
+            if self._last:
+                picture.show(**self._last)
+            return Still(picture.png, self.driver.description or picture.alt)
+        finally:
+            picture.close()
 
     def close(self) -> None:
         """Free what the page and the kernel hold of this scene."""
@@ -91,69 +187,50 @@ class Scene:
             widget.close()
         self.widget.close()
 
+    def _repr_mimebundle_(self, **kwargs: Any) -> Any:
+        """The live widget, and beside it a still for places without a kernel."""
+        bundle = self.widget._repr_mimebundle_(**kwargs)
+        still = self.still()
+        return {**bundle, "image/png": still.png, "text/plain": still.alt}
 
-def _lights() -> list[three.Light]:
-    # A light's target and shadow are given here because pythreejs would else make them in the page
-    # and choke on their echo from the kernel ("Error setting state: t.on is not a function").
-    shadow = three.DirectionalLightShadow(camera=three.OrthographicCamera(-1, 1, 1, -1))
-    return [
-        three.AmbientLight(color="#ffffff", intensity=0.55),
-        three.DirectionalLight(
-            color="#ffffff", intensity=0.6, position=[2, 4, 3],
-            target=three.Object3D(), shadow=shadow,
-        ),
-    ]  # fmt: skip
+    def _make(self, layer: str) -> None:
+        made = self._made[layer] = MAKERS[layer](self.stage, self._joints)
+        for thing in made.things:
+            thing.visible = False
+        if made.roots:
+            self.scene.children = [*self.scene.children, *made.roots]
+        if made.nodes:
+            self.driver.nodes = [*self.driver.nodes, *made.nodes]
+            self.mount()
 
+    def _ground(self, floor: float, advance: float) -> Array:
+        if self.stage.planar:
+            return UPRIGHT + [[0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, -0.2 * self.stage.unit]]
+        glide = -(advance % (SQUARE * self.stage.unit))
+        return STILL + [[0, 0, 0, 0], [0, 0, 0, floor], [0, 0, 0, glide]]
 
-def _node(children: Sequence[Any] = ()) -> three.Group:
-    """Something that the driver moves: its matrix is given, not made from position and so on."""
-    return three.Group(children=list(children), matrixAutoUpdate=False)
+    def _dress(self, f: int) -> None:
+        """Put flesh, or rods, on the joints of figure f, and its name over its head."""
+        stage = self.stage
+        holders: dict[str | None, three.Group] = dict(
+            zip(self.tree.names, self._joints[f], strict=True)
+        )
+        holders[None] = self._grounds[f]
+        flesh: dict[str | None, list[three.Object3D]] = {joint: [] for joint in holders}
+        opacity = 0.5 if stage.overlaid and f > 0 else 1.0
+        for part in skin_of(self.tree, self.effectors, 0.03 * stage.unit):
+            flesh[part.joint] += solids.solid(self._coloured(part, f), opacity)
+        if stage.names[f]:
+            words, at = stage.names[f], stage.name_at(f)
+            flesh[None].append(solids.label(words, self._colour(f), 0.13 * stage.unit, at))
+        for joint, parts in flesh.items():
+            holders[joint].children = parts
 
+    def _colour(self, f: int) -> str:
+        return SHIRT if len(self.stage) == 1 else EFFECTOR_COLOURS[f % len(EFFECTOR_COLOURS)]
 
-def _solid(part: Part) -> list[three.Mesh]:
-    material = three.MeshLambertMaterial(color=part.colour)
-    if isinstance(part, Ball):
-        ball = three.SphereBufferGeometry(1, 20, 14)
-        return [three.Mesh(ball, material, position=list(part.centre), scale=list(part.radii))]
-    return _limb(part, material)
-
-
-def _limb(part: Limb, material: three.Material) -> list[three.Mesh]:
-    start, end = np.asarray(part.start, dtype=float), np.asarray(part.end, dtype=float)
-    rod = three.CylinderBufferGeometry(
-        part.thin, part.thick, float(np.linalg.norm(end - start)), 16, 1, True
-    )
-    middle = three.Mesh(
-        rod, material,
-        position=((start + end) / 2).tolist(), quaternion=quaternion_from_y(end - start),
-    )  # fmt: skip
-    tips = [
-        three.Mesh(three.SphereBufferGeometry(radius, 16, 12), material, position=at.tolist())
-        for at, radius in ((start, part.thick), (end, part.thin))
-    ]
-    return [middle, *tips]
-
-
-def _target(name: str, colour: str) -> list[three.Mesh]:
-    material = three.MeshLambertMaterial(color=colour, transparent=True, opacity=0.85)
-    boxed = name.endswith(".r")
-    shape = (
-        three.BoxBufferGeometry(0.07, 0.07, 0.07)
-        if boxed
-        else three.SphereBufferGeometry(0.045, 16, 12)
-    )
-    return [three.Mesh(shape, material)]
-
-
-def _rod() -> list[three.Mesh]:
-    material = three.MeshBasicMaterial(color=GREY)
-    return [
-        three.Mesh(three.CylinderBufferGeometry(0.006, 0.006, 1, 6), material, position=(0, 0.5, 0))
-    ]
-
-
-def _grid() -> three.GridHelper:
-    return three.GridHelper(6, round(6 / TILE), "#9aa5b1", "#cbd2d9")
+    def _coloured(self, part: Part, f: int) -> Part:
+        return part._replace(colour=self._colour(f)) if part.colour == SHIRT else part
 
 
 def _below(widget: widgets.Widget) -> list[widgets.Widget]:

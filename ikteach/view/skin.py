@@ -12,6 +12,7 @@ BLUE, ORANGE, RED, GREEN = "#0072b2", "#e69f00", "#d55e00", "#009e73"
 PURPLE, SKY, GREY = "#cc79a7", "#56b4e9", "#808890"
 EFFECTOR_COLOURS = (BLUE, ORANGE, RED, GREEN, PURPLE, SKY)
 
+LIGHT, DARK = "#f4f6f8", "#0f1318"  # backgrounds
 SKIN, SHIRT, TROUSERS, SHOES, HAIR = "#d9a57e", "#5f8fb4", "#4a5568", "#2d3340", "#4b3a2f"
 
 
@@ -95,7 +96,7 @@ def stick_skin(tree: Tree, effectors: Effectors, thick: float = 0.03) -> list[Pa
     parts: list[Part] = []
     for j, name in enumerate(tree.names):
         parent = tree.names[tree.parents[j]] if tree.parents[j] >= 0 else None
-        parts.append(Ball(name, (0, 0, 0), (1.4 * thick,) * 3, GREY))
+        parts.append(Ball(name, (0, 0, 0), (1.4 * thick,) * 3, TROUSERS))
         if tree.offsets[j].any():
             parts.append(Limb(parent, (0, 0, 0), tree.offsets[j].tolist(), thick, thick, SHIRT))
     for joint, offset in zip(effectors.joints, effectors.offsets, strict=True):
@@ -104,9 +105,18 @@ def stick_skin(tree: Tree, effectors: Effectors, thick: float = 0.03) -> list[Pa
     return parts
 
 
-def skin_of(tree: Tree, effectors: Effectors) -> list[Part]:
-    """The human's or the simulator's skin if it fits the tree, else rods."""
+def has_human_skin(tree: Tree) -> bool:
+    """Whether the skin of a human, or of the simulator's figure, fits the tree."""
+    return bool(_fitting(tree))
+
+
+def skin_of(tree: Tree, effectors: Effectors, thick: float = 0.03) -> list[Part]:
+    """The human's or the simulator's skin if it fits the tree, else rods so thick."""
+    return _fitting(tree) or stick_skin(tree, effectors, thick)
+
+
+def _fitting(tree: Tree) -> list[Part]:
     for parts in human_skin(), simulator_skin():
         if {part.joint for part in parts} - {None} <= set(tree.names):
             return parts
-    return stick_skin(tree, effectors)
+    return []
