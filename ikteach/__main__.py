@@ -1,4 +1,4 @@
-"""Open the course in JupyterLab: `python -m ikteach`."""
+"""Open the course in JupyterLab: `python -m ikteach`; or build it: `python -m ikteach build`."""
 
 import argparse
 import errno
@@ -17,11 +17,16 @@ PACKAGE = Path(__file__).resolve().parent
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Open the course, or list its chapters; the exit code says whether that went well."""
+    """Open, list or build the course; the exit code says whether that went well."""
     if hasattr(sys.stdout, "reconfigure"):  # a title may hold a σ that the console cannot show
         sys.stdout.reconfigure(errors="replace")
-    options, extra = parse(sys.argv[1:] if argv is None else argv)
+    argv = sys.argv[1:] if argv is None else argv
     try:
+        if argv[:1] == ["build"]:
+            from ikteach.course import builds
+
+            return builds.main(PACKAGE, argv[1:])
+        options, extra = parse(argv)
         return open_course(find_course(PACKAGE), options, extra)
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
@@ -33,7 +38,8 @@ def parse(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
     split = argv.index("--") if "--" in argv else len(argv)
     parser = argparse.ArgumentParser(
         prog="python -m ikteach",
-        usage="%(prog)s [FOLDER] [--no-browser] [--port N] [--list] [-- JUPYTERLAB OPTIONS]",
+        usage="%(prog)s [FOLDER] [--no-browser] [--port N] [--list] [-- JUPYTERLAB OPTIONS]\n"
+        "       %(prog)s build student|instructor|html FOLDER",
         description="Open the course on inverse kinematics in JupyterLab.",
         allow_abbrev=False,
     )

@@ -26,6 +26,7 @@ BELOW = {  # what each room may import of the package
 EVERYTHING = BELOW.keys() | {"", "view", "course"}
 TOP = {"view", "course", "__main__"}
 SCREEN = {"matplotlib", "ipywidgets", "pythreejs", "anywidget", "traitlets", "IPython"}
+PAGES = {"nbformat", "nbclient", "nbconvert", "latex2mathml", "pygments"}
 HEAVY = ["pandas", "matplotlib", "ipywidgets", "pythreejs", "anywidget", "traitlets"]
 
 
@@ -66,7 +67,11 @@ def test_only_numpy_on_the_ground_pandas_in_study_and_screens_on_top(module):
     others -= {"ikteach", "numpy"} | sys.stdlib_module_names
     if here in ("view", "formats"):
         return
-    rooms = {"study": {"pandas"}, "course": SCREEN | {"pandas"}, "server": {"jupyter_server"}}
+    rooms = {
+        "study": {"pandas"},
+        "course": SCREEN | PAGES | {"pandas"},
+        "server": {"jupyter_server"},
+    }
     allowed = rooms.get(here, set())
     if here == "__main__":
         others = {name.split(".")[0] for name in imports(module, at_top_only=True)}

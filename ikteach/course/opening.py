@@ -41,9 +41,9 @@ def find_course(package: Path) -> Course:
 
 
 def course_files(notebooks: Path) -> list[str]:
-    """Names of all files of the course, relative and with `/`; nothing hidden, no checkpoints."""
+    """Names of all files of the course, relative and with `/`; nothing hidden, nobody's answers."""
     files = (path.relative_to(notebooks) for path in notebooks.rglob("*") if path.is_file())
-    hidden = (".", "__pycache__")
+    hidden = (".", "__pycache__", "predictions.")
     return sorted(
         file.as_posix() for file in files if not any(p.startswith(hidden) for p in file.parts)
     )

@@ -105,18 +105,19 @@ def stick_skin(tree: Tree, effectors: Effectors, thick: float = 0.03) -> list[Pa
     return parts
 
 
-def has_human_skin(tree: Tree) -> bool:
-    """Whether the skin of a human, or of the simulator's figure, fits the tree."""
-    return bool(_fitting(tree))
-
-
-def skin_of(tree: Tree, effectors: Effectors, thick: float = 0.03) -> list[Part]:
-    """The human's or the simulator's skin if it fits the tree, else rods so thick."""
-    return _fitting(tree) or stick_skin(tree, effectors, thick)
-
-
-def _fitting(tree: Tree) -> list[Part]:
+def body_skin(tree: Tree) -> list[Part]:
+    """The human's or the simulator's skin, if one of them fits the tree; else none."""
     for parts in human_skin(), simulator_skin():
         if {part.joint for part in parts} - {None} <= set(tree.names):
             return parts
     return []
+
+
+def has_human_skin(tree: Tree) -> bool:
+    """Whether it looks like a human."""
+    return bool(body_skin(tree))
+
+
+def skin_of(tree: Tree, effectors: Effectors, thick: float = 0.03) -> list[Part]:
+    """The skin of a human if it fits the tree, else rods so thick."""
+    return body_skin(tree) or stick_skin(tree, effectors, thick)

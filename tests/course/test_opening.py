@@ -579,6 +579,8 @@ def test_wheel_carries_every_notebook(wheel: Path) -> None:
         names = archive.namelist()
     expected = chapters(wheel.parent / "notebooks")
     assert {f"ikteach/notebooks/{name}" for name in expected} <= set(names)
+    assert "ikteach/course/checking.py" in names
+    assert not any("/solutions/" in name for name in names)
 
 
 def test_installed_command_lists_copies_and_refuses(installed: Installed, tmp_path: Path) -> None:

@@ -1,0 +1,299 @@
+"""Checks of the exercises: by property, and always with a sentence.
+
+A chapter's checkers are in `ikteach.course.exercises.chNN`. A checker is a function of the
+student's answer that returns when all is right and raises `WrongError` with a sentence when not:
+
+    @exercise("00.double", returns=(), hints=["Multiply by two."])
+    def double(answer):
+        for x in (0.0, 1.5, -2.0):
+            expect(answer(x) == 2 * x, f"`{answer.call}` must be twice its argument.")
+
+What every answer may do wrong (raise, return None, a NaN or a wrong shape, never end, change what
+it was given) is dealt with here, for all of them.
+"""
+
+import copy
+import importlib
+import linecache
+import traceback
+import warnings
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ikteach.course import record
+from ikteach.course.deadline import TooLongError, deadline
+from ikteach.course.notice import box, paragraph
+from ikteach.names import unknown
+
+SECONDS = 5.0  # what a check may take in all
+
+Shape = tuple[int, ...]
+Returns = Shape | type | Callable[..., Shape] | None
+
+
+class WrongError(Exception):
+    """The answer is wrong; the message says how, in one sentence."""
+
+
+class NotYetError(Exception):
+    """There is no answer yet; the message may say by what we tell."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a check found. `hint` is empty when there is none to give."""
+
+    key: str
+    passed: bool
+    sentence: str
+    hint: str = ""
+
+    def __str__(self) -> str:
+        hint = f"\n  Hint: {self.hint}" if self.hint else ""
+        return f"{'✓' if self.passed else '✗'} {self.sentence}{hint}"
+
+    __repr__ = __str__
+
+    def _repr_html_(self) -> str:
+        hint = f"<br><b>Hint:</b> {paragraph(self.hint)}" if self.hint else ""
+        return box("good" if self.passed else "bad", paragraph(self.sentence) + hint)
+
+
+class Exercise(NamedTuple):
+    """One exercise: its checker, and what kind of answer it wants."""
+
+    key: str
+    checker: Callable[[Any], None]
+    hints: Sequence[str]
+    returns: Returns
+    value: bool
+    seconds: float
+
+
+EXERCISES: dict[str, Exercise] = {}
+_failures: Counter[str] = Counter()  # in a row, per exercise
+
+
+def exercise(
+    key: str,
+    *,
+    hints: Sequence[str] = (),
+    returns: Returns = None,
+    value: bool = False,
+    seconds: float = SECONDS,
+) -> Callable[[Callable[[Any], None]], Callable[[Any], None]]:
+    """Register a checker for the exercise `key`, such as "01.column".
+
+    hints    given one after the other, one a failure
+    returns  what the student's function must return: a shape, () for one number; a type; a
+             function of the arguments that gives the shape; None leaves it to the checker. What
+             has a shape comes to the checker as a finite float array
+    value    True: the answer is a value and not a function; `returns` is then about the value
+    seconds  what the check may take in all
+    """
+
+    def register(checker: Callable[[Any], None]) -> Callable[[Any], None]:
+        EXERCISES[key] = Exercise(key, checker, hints, returns, value, seconds)
+        return checker
+
+    return register
+
+
+def expect(holds: Any, sentence: str) -> None:
+    """Raise WrongError with the sentence unless `holds`."""
+    if not np.all(holds):
+        raise WrongError(sentence)
+
+
+def check(key: str, answer: Any) -> Verdict:
+    """Whether the exercise `key` is solved by `answer`, a function or a value, in a sentence.
+
+    Each failure in a row gives the next hint. LookupError for an unknown key.
+    """
+    verdict = judge(find(key), answer)
+    if not verdict.passed and not verdict.sentence.startswith("Not yet"):
+        hints = EXERCISES[key].hints
+        hint = hints[min(_failures[key], len(hints) - 1)] if hints else ""
+        _failures[key] += 1
+        verdict = Verdict(key, False, verdict.sentence, hint)
+    elif verdict.passed:
+        _failures.pop(key, None)
+    tries = record.entry("verdicts", key).get("tries", 0) + 1
+    fields = {"passed": verdict.passed, "sentence": verdict.sentence, "tries": tries}
+    trouble = record.store("verdicts", key, **fields)
+    return Verdict(key, verdict.passed, f"{verdict.sentence} {trouble}".strip(), verdict.hint)
+
+
+def find(key: str) -> Exercise:
+    """The exercise of that key, from its chapter's module; LookupError if there is none."""
+    module = f"ikteach.course.exercises.ch{str(key).partition('.')[0]}"
+    try:
+        importlib.import_module(module)
+    except ModuleNotFoundError as error:
+        if error.name != module:
+            raise
+    if key not in EXERCISES:
+        raise LookupError(unknown("exercise", key, EXERCISES))
+    return EXERCISES[key]
+
+
+def judge(task: Exercise, answer: Any) -> Verdict:
+    """The verdict on an answer, without hints and without a record of it."""
+    named = task.key.partition(".")[2]
+    name = getattr(answer, "__name__", named).replace("<lambda>", named)
+    try:
+        with deadline(task.seconds):
+            if answer is None or answer is ...:
+                raise NotYetError
+            task.checker(_value(task, answer) if task.value else _function(task, answer, name))
+    except NotYetError as error:
+        return Verdict(task.key, False, f"Not yet: {error or 'write your answer first.'}")
+    except WrongError as wrong:
+        return Verdict(task.key, False, str(wrong))
+    except TooLongError:
+        stopped = f"`{name}` was stopped after {task.seconds:g} seconds: does a loop in it end?"
+        return Verdict(task.key, False, stopped)
+    except Exception as error:  # ours, and not the student's: they are not to be left without word
+        broken = f"The check itself failed ({type(error).__name__}: {error}); this is a mistake of "
+        return Verdict(
+            task.key, False, broken + "the course, unless your answer is of an odd kind."
+        )
+    return Verdict(task.key, True, f"`{name}` passes every check.")
+
+
+class Answer:
+    """A student's function as a checker sees it: it returns what it must or raises WrongError.
+
+    call   the last call, as text for sentences
+    """
+
+    def __init__(self, function: Callable[..., Any], name: str, returns: Returns) -> None:
+        self._function, self.name, self._returns = function, name, returns
+        self.call = f"{name}()"
+
+    def __call__(self, *arguments: Any) -> Any:
+        """The answer to these arguments, which stay as they are."""
+        self.call = f"{self.name}({', '.join(map(brief, arguments))})"
+        given = copy.deepcopy(arguments)
+        with np.errstate(all="ignore"), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            result = self._run(given)
+        for i, (before, after) in enumerate(zip(arguments, given, strict=True), start=1):
+            if not _same(before, after):
+                changed = f"`{self.name}` changed its argument {i}: work on a copy of it."
+                raise WrongError(changed)
+        if result is None:
+            raise NotYetError(f"`{self.name}` returned None. Does it end with `return`?")
+        if result is ...:
+            raise NotYetError(f"`{self.name}` still returns `...`")
+        wanted = self._returns
+        if not (wanted is None or isinstance(wanted, tuple | type)):
+            wanted = wanted(*arguments)
+        return of_form(result, wanted, f"`{self.call}` returned")
+
+    def error(self, *arguments: Any) -> Exception | None:
+        """What the function raises for these arguments; None if it returns."""
+        self.call = f"{self.name}({', '.join(map(brief, arguments))})"
+        try:
+            with np.errstate(all="ignore"), warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                result = self._function(*copy.deepcopy(arguments))
+        except NotImplementedError:
+            raise NotYetError(f"`{self.name}` still says that it is not implemented.") from None
+        except Exception as error:
+            return error
+        if result is ...:
+            raise NotYetError(f"`{self.name}` still returns `...`")
+        return None
+
+    def _run(self, given: Sequence[Any]) -> Any:
+        try:
+            return self._function(*given)
+        except NotImplementedError:
+            raise NotYetError(f"`{self.name}` still says that it is not implemented.") from None
+        except SystemExit:
+            raise WrongError(f"`{self.name}` ended with exit(); use return.") from None
+        except Exception as error:
+            raise WrongError(f"`{self.call}` {_told(error)}") from None
+
+
+def _same(before: Any, after: Any) -> bool:
+    """Whether an argument is as it was; of arrays and lists of numbers this can be told."""
+    if isinstance(before, np.ndarray | list):
+        return np.array_equal(np.asarray(before), np.asarray(after), equal_nan=True)
+    return True
+
+
+def _function(task: Exercise, answer: Any, name: str) -> Answer:
+    if not callable(answer):
+        hint = f"check({task.key!r}, {name})"
+        raise WrongError(f"The check needs the function itself, `{hint}`, not {_kind(answer)}.")
+    return Answer(answer, name, task.returns)
+
+
+def _value(task: Exercise, answer: Any) -> Any:
+    if callable(answer):
+        raise WrongError("The check needs a value, not a function: call it first.")
+    return of_form(answer, task.returns, "Your answer is")
+
+
+def of_form(result: Any, wanted: Any, said: str) -> Any:
+    """`result` if it is what is wanted, as a finite array where that is a shape; else WrongError.
+
+    `said` begins the sentence: "`f(x)` returned".
+    """
+    if wanted is None:
+        return result
+    if isinstance(wanted, type):
+        kinds = {bool: (bool, np.bool_), str: (str,), int: (int, np.integer)}
+        if not isinstance(result, kinds.get(wanted, (wanted,))):
+            raise WrongError(f"{said} {_kind(result)}, where {_a(wanted.__name__)} is wanted.")
+        return result
+    form = f"an array of shape {wanted}" if wanted else "one number"
+    try:
+        array = np.asarray(result)
+        if array.dtype.kind not in "biuf":  # text, complex numbers, objects
+            raise TypeError
+        array = array.astype(float)
+    except (TypeError, ValueError):
+        raise WrongError(f"{said} {_kind(result)}, where {form} is wanted.") from None
+    if array.shape != wanted:
+        shape = f"an array of shape {array.shape}" if array.shape else "one number"
+        raise WrongError(f"{said} {shape}, where {form} is wanted.")
+    if np.isnan(array).any():
+        raise WrongError(f"{said} NaN, which is no number: what was divided by zero?")
+    if np.isinf(array).any():
+        raise WrongError(f"{said} an infinite number: what was divided by zero?")
+    return array
+
+
+def brief(value: Any) -> str:
+    """A value in few words, for a sentence."""
+    if isinstance(value, np.ndarray) and value.size > 4:
+        return f"array {value.shape}"
+    if isinstance(value, np.ndarray | float):
+        return np.array2string(np.asarray(value), precision=3, separator=", ", threshold=6)
+    text = repr(value)
+    return text if len(text) <= 40 else _kind(value)
+
+
+def _kind(value: Any) -> str:
+    return _a(type(value).__name__)
+
+
+def _a(name: str) -> str:
+    return f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
+
+
+def _told(error: Exception) -> str:
+    """What was raised and in which line of the student's, without a traceback."""
+    words = f"raised {type(error).__name__}: {str(error).strip() or 'without a word'}"
+    frames = traceback.extract_tb(error.__traceback__)[1:]  # the first is our own call
+    theirs = [frame for frame in frames if frame.filename == frames[0].filename] if frames else []
+    line = linecache.getline(theirs[-1].filename, theirs[-1].lineno or 0).strip() if theirs else ""
+    end = f", in the line `{line}`" if line else ""
+    return f"{words.splitlines()[0].rstrip('.')}{end}."

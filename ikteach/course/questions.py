@@ -1,0 +1,199 @@
+"""A prediction before the code runs, what came of it, and the exit questions.
+
+The widgets are made in `ikteach.course.widget`, imported when the first one is asked for.
+"""
+
+import html
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from numbers import Real
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ikteach.course import record
+from ikteach.course.notice import box
+
+if TYPE_CHECKING:
+    from ikteach.course.widget import Question
+
+NOBODY = "You made no prediction."
+
+
+def predict(
+    key: str,
+    question: str,
+    options: Sequence[str] = (),
+    *,
+    numbers: tuple[float, float, str] | None = None,
+    ranking: bool = False,
+    explain: str | None = None,
+) -> "Question":
+    """A question to answer before the code runs; make it the last line of its cell.
+
+    key      chapter and name, such as "03.half-alpha"
+    options  what there is to choose from, or to put in order if `ranking`
+    numbers  (low, high, unit) for a number in place of options
+    explain  a sentence under the question
+    The answer is stored when it is locked in, and may be changed until `reveal` shows the result.
+    """
+    from ikteach.course.widget import Question
+
+    kind = "number" if numbers is not None else "ranking" if ranking else "choice"
+    if numbers is None and len(options) < 2:
+        raise ValueError(f"{key!r} needs options to choose from, or numbers=(low, high, unit)")
+    known = record.entry("predictions", key)
+    shown = Question(
+        key,
+        lambda answer: _store(key, answer),
+        kind=kind,
+        question=question,
+        note=explain or "",
+        options=list(options),
+        numbers=list(numbers or ()),
+    )
+    if fits(known.get("answer"), kind, options, numbers):
+        shown.answer = known["answer"]
+        shown.status = f"Your prediction: {words(known['answer'])}."
+        shown.locked = "result" in known
+        shown.status += LOCKED if shown.locked else CHANGE
+    return shown
+
+
+CHANGE = " You can change it until the result is shown."
+LOCKED = " It is locked: the result has been shown."
+
+
+def fits(
+    answer: Any, kind: str, options: Sequence[str], numbers: tuple[float, float, str] | None
+) -> bool:
+    """Whether a stored answer is one that this question can have."""
+    if kind == "number":
+        assert numbers is not None
+        real = isinstance(answer, Real) and not isinstance(answer, bool)
+        return real and numbers[0] <= float(answer) <= numbers[1]
+    if kind == "ranking":
+        return isinstance(answer, list) and sorted(map(str, answer)) == sorted(options)
+    return answer in options
+
+
+def _store(key: str, answer: Any) -> str:
+    known = record.entry("predictions", key)
+    if "result" in known and known.get("answer") is not None:
+        return f"Your prediction: {words(known['answer'])}.{LOCKED}"
+    late = "result" in known
+    trouble = record.store("predictions", key, answer=answer, **({"late": True} if late else {}))
+    after = " The result was shown before." if late else CHANGE
+    return f"Your prediction: {words(answer)}.{after} {trouble}".strip()
+
+
+@dataclass(frozen=True)
+class Revealed:
+    """A prediction beside the result."""
+
+    prediction: Any
+    result: Any
+    because: str = ""
+    late: bool = False
+    trouble: str = ""
+
+    @property
+    def right(self) -> bool | None:
+        """Whether they agree; None for numbers, where it is a matter of how near."""
+        if self.prediction is None or isinstance(self.result, int | float):
+            return None
+        return bool(self.prediction == self.result)
+
+    def _lines(self) -> list[str]:
+        said = NOBODY if self.prediction is None else f"You predicted: {words(self.prediction)}."
+        lines = [said + (" (after the result was shown)" if self.late else "")]
+        lines.append(f"Computed: {words(self.result)}.")
+        if self.right is None and isinstance(self.prediction, int | float):
+            lines.append(f"That is {words(abs(self.prediction - self.result))} away.")
+        elif self.right is not None:
+            lines.append("They agree." if self.right else "They differ.")
+        return [*lines, *filter(None, [self.because, self.trouble])]
+
+    def __str__(self) -> str:
+        return "\n".join(self._lines())
+
+    __repr__ = __str__
+
+    def _repr_html_(self) -> str:
+        mood = {True: "good", False: "bad", None: "plain"}[self.right]
+        return box(mood, "<br>".join(map(html.escape, self._lines())))  # type: ignore[arg-type]
+
+
+def reveal(key: str, answer: Any, because: str | None = None) -> Revealed:
+    """Show the prediction `key` beside the computed `answer`, and lock it.
+
+    answer   what the notebook has computed: an option, a number, or an order
+    because  a sentence on why
+    A prediction that was not made stays open: the result is shown all the same.
+    """
+    result = plain(answer)
+    known = record.entry("predictions", key)
+    trouble = record.store("predictions", key, result=result)
+    _lock(key)
+    return Revealed(
+        known.get("answer"), result, because or "", bool(known.get("late")), trouble
+    )  # fmt: skip
+
+
+def _lock(key: str) -> None:
+    import sys
+
+    module = sys.modules.get("ikteach.course.widget")
+    shown = module.Question.living(key) if module else None
+    if shown is not None and record.entry("predictions", key).get("answer") is not None:
+        shown.locked = True
+        shown.status = f"Your prediction: {words(shown.answer)}.{LOCKED}"
+
+
+def quiz(
+    key: str, question: str, options: Sequence[str], right: str, why: str | Mapping[str, str]
+) -> "Question":
+    """An exit question; make it the last line of its cell.
+
+    right  the right one of the options
+    why    {option: a sentence} for the options, said when one is chosen; or one sentence for all
+    LookupError if `right` or a key of `why` is not among the options.
+    """
+    from ikteach.course.widget import Question
+    from ikteach.names import unknown
+
+    reasons = dict.fromkeys(options, why) if isinstance(why, str) else dict(why)
+    for name in (right, *reasons):
+        if name not in options:
+            raise LookupError(unknown(f"option of {key!r}", name, options))
+
+    def judge(answer: str) -> str:
+        good = answer == right
+        known = record.entry("quiz", key)
+        trouble = record.store(
+            "quiz", key, answer=answer, right=good, tries=known.get("tries", 0) + 1
+        )
+        verdict = "✓ Right." if good else "✗ Not so."
+        return f"{verdict} {reasons.get(answer, '')} {trouble}".strip()
+
+    return Question(
+        f"quiz {key}", judge, question=question, options=list(options), button="Check"
+    )  # fmt: skip
+
+
+def plain(value: Any) -> Any:
+    """A value of numpy's as Python's own: what JSON can hold."""
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, list | tuple):
+        return [plain(one) for one in value]
+    return value if isinstance(value, str | int | float | bool) or value is None else str(value)
+
+
+def words(value: Any) -> str:
+    """An answer as a person writes it."""
+    if isinstance(value, list):
+        return ", then ".join(map(words, value))
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    return str(value)

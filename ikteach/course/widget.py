@@ -1,0 +1,67 @@
+"""The widget of a question. It knows nothing of what is right; it tells what was answered."""
+
+import html
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, ClassVar
+
+import anywidget
+import traitlets
+
+
+class Question(anywidget.AnyWidget):
+    """A question with choices, a number or an order to put things in (see question.js).
+
+    `on_answer` is called with each answer that is sent and gives the words to show under it. A
+    second question of the same key closes the first: its cell was run again.
+    """
+
+    _esm = Path(__file__).parent / "question.js"
+    _living: ClassVar[dict[str, "Question"]] = {}
+
+    kind = traitlets.Enum(["choice", "number", "ranking"], "choice").tag(sync=True)
+    question = traitlets.Unicode().tag(sync=True)
+    note = traitlets.Unicode().tag(sync=True)
+    options = traitlets.List(traitlets.Unicode()).tag(sync=True)
+    numbers: Any = traitlets.List().tag(sync=True)  # low, high, unit
+    button = traitlets.Unicode("Lock in").tag(sync=True)
+    answer = traitlets.Any(None, allow_none=True).tag(sync=True)
+    asked = traitlets.Int(0).tag(sync=True)  # how often an answer was sent
+    locked = traitlets.Bool(False).tag(sync=True)
+    status = traitlets.Unicode().tag(sync=True)
+
+    def __init__(self, key: str, on_answer: Callable[[Any], str], **traits: Any) -> None:
+        if key in self._living:
+            self._living.pop(key).close()
+        super().__init__(**traits)
+        self._key, self._on_answer = key, on_answer
+        self._living[key] = self
+        self.observe(self._sent, "asked")
+
+    def _sent(self, _: Any) -> None:
+        if not self.locked:
+            self.status = self._on_answer(self.answer)
+
+    @classmethod
+    def living(cls, key: str) -> "Question | None":
+        """The question of this key that is on the page, if there is one."""
+        return cls._living.get(key)
+
+    def _repr_mimebundle_(self, **kwargs: Any) -> Any:
+        """The widget, and beside it the question to read in places without a kernel."""
+        bundle = super()._repr_mimebundle_(**kwargs)
+        data, metadata = bundle if isinstance(bundle, tuple) else (bundle, {})
+        still = {"text/html": self._still(), "text/plain": self.question}
+        return {**(data or {}), **still}, metadata
+
+    def _still(self) -> str:
+        lines: Sequence[str] = self.options
+        if self.kind == "number":
+            low, high, unit = self.numbers
+            lines = [f"a number from {low} to {high} {unit}".strip()]
+        items = "".join(f"<li>{html.escape(line)}</li>" for line in lines)
+        note = f"<p>{html.escape(self.note)}</p>" if self.note else ""
+        return (
+            '<div style="border-left:4px solid #0072b2;padding:2px 14px">'
+            f"<b>{html.escape(self.question)}</b>{note}<ul>{items}</ul></div>"
+        )

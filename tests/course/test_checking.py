@@ -1,0 +1,252 @@
+"""The machinery of the checks: whatever an answer does, a sentence comes of it."""
+
+import contextlib
+import json
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ikteach.course import check, checking
+from ikteach.course.checking import EXERCISES, Answer, WrongError, exercise, expect
+from ikteach.course.deadline import TooLongError, Tracer, deadline
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(checking, "EXERCISES", EXERCISES)
+    return tmp_path
+
+
+@pytest.fixture(scope="module", autouse=True)
+def registered() -> Any:
+    """Exercises of a chapter that is none."""
+
+    @exercise("xx.double", returns=(2,), hints=["first", "second"], seconds=0.3)
+    def double(answer: Answer) -> None:
+        for x in (np.array([0.0, 1.0]), np.array([-2.0, 3.5])):
+            expect(np.allclose(answer(x), 2 * x), f"`{answer.call}` must be twice its argument.")
+
+    @exercise("xx.same", returns=lambda x: x.shape)
+    def same(answer: Answer) -> None:
+        expect(answer(np.zeros((2, 3))) == 0, "It must be zero.")
+
+    @exercise("xx.even", returns=bool)
+    def even(answer: Answer) -> None:
+        expect(answer(2) and not answer(3), "2 is even and 3 is not.")
+
+    @exercise("xx.refuse")
+    def refuse(answer: Answer) -> None:
+        expect(isinstance(answer.error(0), ValueError), "Zero must be refused by ValueError.")
+
+    @exercise("xx.number", returns=(), value=True)
+    def number(value: Any) -> None:
+        expect(value == 7, "It is another number.")
+
+    @exercise("xx.broken")
+    def broken(answer: Answer) -> None:
+        raise KeyError("ours")
+
+    yield
+    for key in [key for key in EXERCISES if key.startswith("xx")]:
+        del EXERCISES[key]
+
+
+def said(key: str, answer: Any) -> str:
+    verdict = check(key, answer)
+    assert not verdict.passed
+    assert "\n" not in verdict.sentence
+    assert "Traceback" not in str(verdict)
+    return verdict.sentence
+
+
+def test_right_answers_pass() -> None:
+    assert check("xx.double", lambda x: 2 * x).passed
+    assert check("xx.double", lambda x: [2 * one for one in x]).passed
+    assert check("xx.same", np.zeros_like).passed
+    assert check("xx.even", lambda x: np.bool_(x % 2 == 0)).passed
+    assert check("xx.number", np.float64(7)).passed
+    verdict = check("xx.number", 7)
+    assert str(verdict) == "✓ `number` passes every check."
+    assert "✓" in verdict._repr_html_()
+    assert "<code>number</code>" in verdict._repr_html_()
+
+
+def stub(x: Any) -> Any: ...
+
+
+def unwritten(x: Any) -> Any:
+    raise NotImplementedError
+
+
+@pytest.mark.parametrize("answer", [stub, unwritten, lambda x: ..., None, ...])
+def test_a_stub_is_not_yet_an_answer(answer: Any) -> None:
+    for _ in range(3):
+        verdict = check("xx.double", answer)
+        assert not verdict.passed
+        assert verdict.sentence.startswith("Not yet")
+        assert verdict.hint == ""
+
+
+def wild(x: Any) -> Any:
+    number = {}["nothing"]
+    return number
+
+
+def changes(x: Any) -> Any:
+    x *= 2
+    return x
+
+
+def recursive(x: Any) -> Any:
+    return recursive(x)
+
+
+def leaves(x: Any) -> Any:
+    sys.exit(3)
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        (lambda x: x, "`double([0., 1.])` must be twice its argument."),
+        (lambda x: x[:1], "array of shape (1,), where an array of shape (2,) is wanted"),
+        (lambda x: 3, "returned one number, where an array of shape (2,)"),
+        (lambda x: x * np.nan, "NaN"),
+        (lambda x: 1 / np.zeros(2), "infinite"),
+        (lambda x: "2, 4", "returned a str, where"),
+        (lambda x: {1: 2}, "returned a dict, where"),
+        (lambda x: [[1], [2, 3]], "returned a list, where"),
+        (lambda x: x * 1j, "returned a"),
+        (lambda x, y: x, "raised TypeError"),
+        (wild, "raised KeyError: 'nothing', in the line `number = {}[\"nothing\"]`."),
+        (changes, "changed its argument 1"),
+        (recursive, "RecursionError"),
+        (leaves, "exit()"),
+        (7, "needs the function itself, `check('xx.double', double)`, not an int"),
+    ],
+)
+def test_wrong_answers_have_their_sentence(answer: Any, words: str) -> None:
+    assert words in said("xx.double", answer)
+
+
+def test_other_kinds_of_answer() -> None:
+    assert "returned an int, where a bool is wanted" in said("xx.even", lambda x: 1)
+    assert "2 is even" in said("xx.even", lambda x: True)
+    assert "must be refused" in said("xx.refuse", lambda x: x)
+    assert check("xx.refuse", lambda x: int("no")).passed
+    assert said("xx.refuse", unwritten).startswith("Not yet")
+    assert "another number" in said("xx.number", 8)
+    assert "Your answer is NaN" in said("xx.number", float("nan"))
+    assert "not a function" in said("xx.number", lambda: 7)
+    assert "The check itself failed (KeyError: 'ours')" in said("xx.broken", lambda: 7)
+    with pytest.raises(LookupError, match=r"no exercise 'xx.doubel'; did you mean 'xx.double'"):
+        check("xx.doubel", stub)
+
+
+def test_hints_come_one_a_failure_and_begin_again() -> None:
+    check("xx.double", lambda x: 2 * x)
+    hints = [check("xx.double", lambda x: x).hint for _ in range(3)]
+    assert hints == ["first", "second", "second"]
+    assert "Hint: second" in str(check("xx.double", lambda x: x))
+    assert "<b>Hint:</b> second" in check("xx.double", lambda x: x)._repr_html_()
+    check("xx.double", lambda x: 2 * x)
+    assert check("xx.double", lambda x: x).hint == "first"
+
+
+def test_verdicts_are_recorded(folder: Path) -> None:
+    check("xx.double", lambda x: x)
+    check("xx.double", lambda x: 2 * x)
+    entry = json.loads((folder / "predictions.json").read_text())["verdicts"]["xx.double"]
+    assert (entry["passed"], entry["tries"]) == (True, 2)
+
+
+def test_arguments_come_to_no_harm() -> None:
+    seen = np.array([1.0, 2.0])
+    with pytest.raises(WrongError, match="changed its argument 1"):
+        Answer(changes, "changes", (2,))(seen)
+    assert (seen == [1, 2]).all()
+
+
+# ---- what never ends
+
+
+def endless(x: Any) -> Any:
+    while True:
+        pass
+
+
+def stubborn(x: Any) -> Any:
+    while True:
+        with contextlib.suppress(Exception):
+            x = x + 1
+
+
+def sleeper(x: Any) -> Any:
+    time.sleep(60)
+
+
+def swallower(x: Any) -> Any:
+    for _ in range(20):
+        try:
+            while True:
+                pass
+        except:  # noqa: E722
+            pass
+
+
+@pytest.mark.parametrize("answer", [endless, stubborn, sleeper])
+def test_what_never_ends_is_stopped(answer: Any) -> None:
+    began = time.monotonic()
+    assert "was stopped after 0.3 seconds" in said("xx.double", answer)
+    assert time.monotonic() - began < 10
+    time.sleep(0.25)  # no alarm comes after
+
+
+def test_a_bare_except_does_not_keep_it_running() -> None:
+    began = time.monotonic()
+    assert not check("xx.double", swallower).passed
+    assert time.monotonic() - began < 20
+
+
+@pytest.mark.parametrize("answer", [endless, stubborn])
+def test_it_is_stopped_in_a_thread_too(answer: Any) -> None:
+    verdicts: list[Any] = []
+    worker = threading.Thread(target=lambda: verdicts.append(check("xx.double", answer)))
+    worker.start()
+    worker.join(20)
+    assert not worker.is_alive()
+    assert "was stopped after 0.3 seconds" in verdicts[0].sentence
+
+
+def test_a_tracer_leaves_what_was_traced_before() -> None:
+    before = sys.gettrace()
+    with pytest.raises(TooLongError), Tracer(0.05):
+        endless(0)
+    assert sys.gettrace() is before
+    with Tracer(60):
+        assert sum(range(10)) == 45
+
+
+def test_a_deadline_that_is_met_leaves_nothing_behind() -> None:
+    import signal
+
+    before = signal.getsignal(signal.SIGALRM)
+    with deadline(0.05):
+        pass
+    time.sleep(0.15)
+    assert signal.getsignal(signal.SIGALRM) is before
+    assert signal.getitimer(signal.ITIMER_REAL) == (0, 0)
+
+
+def test_the_course_is_imported_without_screens() -> None:
+    heavy = ["ipywidgets", "anywidget", "pandas", "matplotlib"]
+    code = f"import sys, ikteach.course as c; print([m for m in {heavy} if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
