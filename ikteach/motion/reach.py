@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Index, Mask
+from ikteach.body import Effectors
 from ikteach.motion.packages import MIDDLE, NONE, PACKAGES, Body, backs_reach, both_reach
 from ikteach.motion.step import numbers
 from ikteach.motion.ways import (
@@ -73,10 +74,11 @@ class Standing:
         self.largest = self.moves = 0.0
         self.poses: deque[Array] = deque([self.tick.theta], maxlen=2 * LONGEST)
 
-    def take(self, tick: Tick, neck: int) -> None:
-        """Note what one more tick did."""
+    def take(self, tick: Tick, besides: int | None = None) -> None:
+        """Note what one more tick did; `besides` is a joint whose steps do not count."""
         turned = abs(tick.theta - self.tick.theta)
-        turned[neck] = 0
+        if besides is not None:
+            turned[besides] = 0
         self.tick, self.moves = tick, float(turned.max())
         self.ticks += 1
         self.largest = max(self.largest, self.moves)
@@ -108,6 +110,14 @@ class Standing:
         return f"stuck {far}" if rest and self.ticks else "on its way"
 
 
+def placed(cursor: ArrayLike, room: Array) -> Array:
+    """The cursor (3,) [m], or the place nearest to it between the corners of the room (2, 3)."""
+    place = numbers("the cursor", cursor)
+    if place.shape != (3,) or not np.isfinite(place).all():
+        raise ValueError(f"a cursor is three finite numbers, not {cursor!r}")
+    return np.clip(place, *room)
+
+
 class Reach:
     """A figure that reaches for a cursor, by every way at once; one of them is shown.
 
@@ -116,6 +126,7 @@ class Reach:
     method    the name of the one that is shown
     parts, max_step   go to `advance`, the same for all ways
     dt        clock time of one tick [s]
+    room      (2, 3) corners of where the cursor can be [m]
     standing  {name: Standing}
     """
 
@@ -133,6 +144,7 @@ class Reach:
         self.tree = self.body.tree
         self.ways = Ways(ways)
         self.parts, self.max_step, self.dt = parts, max_step, dt
+        self.room = ROOM
         self._start = cursor
         self.show(method)
         self.reset()
@@ -153,10 +165,7 @@ class Reach:
 
     def put(self, cursor: ArrayLike) -> None:
         """Put the cursor to (3,) [m], or to the nearest place in the room; ValueError if unfit."""
-        place = numbers("the cursor", cursor)
-        if place.shape != (3,) or not np.isfinite(place).all():
-            raise ValueError(f"a cursor is three finite numbers, not {cursor!r}")
-        self.cursor = np.clip(place, *ROOM)
+        self.cursor = placed(cursor, self.room)
         self._backs = backs_reach(self.body, self.cursor)
         self._arms = {side: bool(both_reach(self.body, side, self.cursor)) for side in "rl"}
         for one in self.standing.values():
@@ -178,6 +187,11 @@ class Reach:
         self.ticks += 1
         for name, tick in done.items():  # only now: a solver that fails changes nothing
             self.standing[name].take(tick, self.body.neck)
+
+    @property
+    def effectors(self) -> Effectors:
+        """The hand on the cursor's side."""
+        return self.body.hands[self.side]
 
     @property
     def theta(self) -> Array:

@@ -186,7 +186,7 @@ def _reach(
         """Δθ of the method on the degrees in use, with the way to rest of the others in it."""
         ours = J @ used
         if told[0, 0] != told[0, 0]:  # once a tick, not again where a limit holds a joint
-            told[:] = _figures(ours, way.packaged)
+            told[:] = figures_of(ours, way.packaged)
         far = np.linalg.norm(e, axis=-1) > NEAR
         if way.packaged:  # and where det is near 0 the package takes no step
             far &= independence(ours) > SINGULAR
@@ -200,12 +200,13 @@ def _reach(
     return done.theta, told
 
 
-def _figures(J: Array, packaged: bool) -> Array:
-    """det, independence and smallest σ of J (b, 3, m) in use: (3, b)."""
+def figures_of(J: Array, packaged: bool) -> Array:
+    """det, independence and smallest σ of J (..., 3, m) in use: (3, ...); see `Tick`."""
     sigma = np.linalg.svdvals(J)
     if packaged:
-        return np.stack([determinant(J), independence(J), sigma[:, -1]])
-    return np.stack([sigma.prod(axis=-1), np.full(len(J), np.nan), sigma[:, -1]])
+        return np.stack([determinant(J), independence(J), sigma[..., -1]])
+    volume = sigma.prod(axis=-1)
+    return np.stack([volume, np.full_like(volume, np.nan), sigma[..., -1]])
 
 
 def together(side: str) -> Package:
