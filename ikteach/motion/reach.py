@@ -100,7 +100,7 @@ class Standing:
         if self.period:
             return f"oscillates, {far}: its poses repeat every {self.period} ticks"
         if tick.package == NONE:
-            return "no package answers: at rest" if rest else "no package answers: goes to rest"
+            return "does not answer: at rest" if rest else "does not answer: goes to rest"
         if self.ticks >= PATIENCE and not rest:
             return f"has not come to rest in {self.ticks} ticks, {far}"
         if self.arrived is not None:
