@@ -12,6 +12,7 @@ import pandas as pd
 from ikteach.arrays import ArrayLike, Mask
 from ikteach.body import Effectors, Tree
 from ikteach.motion import Track, reachable, track
+from ikteach.motion.experiment import reversals
 from ikteach.solvers import SOLVERS, Solver
 
 MEASURES = ["mean", "median", "p95", "max", "jitter", "capped", "held", "smallest_sigma"]
@@ -163,3 +164,52 @@ def timing(tracks: Mapping[str, Track]) -> pd.Series:
     """Wall time of one step of each run [s]; it belongs to this machine and this moment."""
     seconds = {name: run.seconds for name, run in tracks.items()}
     return pd.Series(seconds, name="seconds a step", dtype=float).rename_axis("method")
+
+
+def after(run: Track, seconds: float) -> Track:
+    """The run without its first seconds, in which a method finds its targets."""
+    late = run.times > seconds
+    if not late.any():
+        raise ValueError(f"nothing of a run of {run.times[-1]:g} s is left after {seconds:g} s")
+    return Track(
+        run.method, run.tree, run.effectors, run.times[late], run.targets[late],
+        run.theta[late][0], run.theta[late], run.error[late], run.capped[late], run.held[late],
+        run.seconds,
+    )  # fmt: skip
+
+
+def variants(run: Track, labels: Iterable[Any], name: str = "variant") -> pd.DataFrame:
+    """What a run of a batch (b,) comes to, a row for each member under its label.
+
+    The columns are those of `summary`, with `reversals` [1/s] of a joint beside the jitter.
+    """
+    names = list(labels)
+    if run.theta.ndim != 3 or run.theta.shape[1] != len(names):
+        raise ValueError(f"{len(names)} labels do not fit a batch of {run.theta.shape[1:-1]}")
+    rows = [measures(run, (i,)) for i in range(len(names))]
+    return pd.DataFrame(rows, index=pd.Index(names, name=name))
+
+
+def overview(tracks: Mapping[str, Track], name: str = "method") -> pd.DataFrame:
+    """What runs without batches come to, a row for each: the columns of `variants`.
+
+    It asks nobody what can be reached, and is quick where the full `log` is not.
+    """
+    rows = [measures(run, ()) for run in tracks.values()]
+    return pd.DataFrame(rows, index=pd.Index(list(tracks), name=name))
+
+
+def measures(run: Track, member: tuple[Any, ...]) -> dict[str, float]:
+    """The measures of one member of a batch; () where there is no batch."""
+    error = run.error[:, *member]
+    return {
+        "mean": error.mean(),
+        "median": np.median(error),
+        "p95": np.quantile(error, 0.95),
+        "max": error.max(),
+        "jitter": run.jitter[:, *member].mean(),
+        "reversals": reversals(run)[member],
+        "capped": run.capped[:, *member].mean(),
+        "held": run.held[:, *member].sum(axis=-1).mean(),
+        "smallest_sigma": run.smallest_sigma[:, *member].min(),
+    }

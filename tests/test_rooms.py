@@ -21,6 +21,7 @@ BELOW = {  # what each room may import of the package
     "solvers": TOOLS,
     "motion": TOOLS | {"body", "solvers"},
     "study": TOOLS | {"body", "solvers", "motion"},
+    "trials": TOOLS | {"body", "solvers", "motion", "study"},
     "formats": TOOLS | {"body", "solvers", "motion"},
 }
 EVERYTHING = BELOW.keys() | {"", "view", "course"}
@@ -69,6 +70,7 @@ def test_only_numpy_on_the_ground_pandas_in_study_and_screens_on_top(module):
         return
     rooms = {
         "study": {"pandas"},
+        "trials": {"pandas"},
         "course": SCREEN | PAGES | {"pandas"},
         "server": {"jupyter_server"},
     }

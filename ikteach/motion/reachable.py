@@ -45,6 +45,22 @@ def nearest(tree: Tree, effectors: Effectors, targets: ArrayLike, *, within: flo
     return out.reshape(targets.shape[:-1])
 
 
+def annulus(tree: Tree, effectors: Effectors, i: int) -> tuple[Array, float, float]:
+    """Where effector i's chain is fixed (3,), and how near and how far it could stretch [m].
+
+    As if every joint could turn any way: the links ℓ reach from max(0, 2 max ℓ − Σℓ) to Σℓ. Limits
+    and axes only take from that; a slide lengthens its link, and brings it near.
+    """
+    first, *chain = sorted(tree.above(int(effectors.joints[i])))
+    slides = np.where(tree.slide, np.maximum(abs(tree.lower), abs(tree.upper)), 0.0)
+    if not np.isfinite(slides[[first, *chain]]).all():
+        raise ValueError(f"a slide without limits has no reach: effector {effectors.names[i]!r}")
+    links = np.linalg.norm([*tree.offsets[chain], effectors.offsets[i]], axis=1)
+    outer = links.sum() + slides[[first, *chain]].sum()
+    inner = 0.0 if slides[[first, *chain]].any() else max(0.0, 2 * links.max() - outer)
+    return tree.offsets[first], float(inner), float(outer)
+
+
 def _limb(tree: Tree, effectors: Effectors, i: int) -> tuple[Tree, Effectors]:
     """The joints that carry effector i, alone, and that effector on them."""
     joints = sorted(tree.above(int(effectors.joints[i])))

@@ -1,7 +1,9 @@
 """What a person sees and touches. It holds no mathematics: it is told poses and draws them."""
 
+from ikteach.view.bend import BendBench
 from ikteach.view.player import GaitPlayer
+from ikteach.view.posing import ColumnPoser, Poser
 from ikteach.view.scene import Scene
 from ikteach.view.still import StillScene
 
-__all__ = ["GaitPlayer", "Scene", "StillScene"]
+__all__ = ["BendBench", "ColumnPoser", "GaitPlayer", "Poser", "Scene", "StillScene"]

@@ -45,7 +45,7 @@ class ErrorPlot:
                 _draw(line, tracks[shown].times, error)
         for line, run in zip(self._methods, tracks.values(), strict=False):
             _draw(line, run.times, run.error.mean(axis=-1))
-        return _png(np.asarray(self._canvas.buffer_rgba()))
+        return as_png(np.asarray(self._canvas.buffer_rgba()))
 
 
 def _lines(axes: Axes, names: list[str], title: str) -> list[Line2D]:
@@ -70,7 +70,8 @@ def _draw(line: Line2D, times: Array, error: Array) -> None:
     line.axes.draw_artist(line)  # type: ignore[union-attr]
 
 
-def _png(pixels: Array) -> bytes:
+def as_png(pixels: Array) -> bytes:
+    """RGBA pixels (h, w, 4) as a PNG of few colours."""
     from PIL import Image  # comes with matplotlib
 
     out = io.BytesIO()
@@ -114,7 +115,7 @@ def portrait(tree: Tree, effectors: Effectors, theta: Array, targets: Array) -> 
     s = locate(frames, effectors)
     views = [("from the front", 0, "x [m], left →"), ("from the left side", 2, "z [m], forward →")]
     for axes, (title, across, label) in zip(figure.subplots(1, 2), views, strict=True):
-        for start, end in _bones(tree, effectors, frames.positions, s):
+        for start, end in bones(tree, effectors, frames.positions, s):
             axes.plot([start[across], end[across]], [start[1], end[1]], "-", color="0.35", lw=3)
         for i, name in enumerate(effectors.names):
             colour = EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)]
@@ -127,7 +128,7 @@ def portrait(tree: Tree, effectors: Effectors, theta: Array, targets: Array) -> 
     return out.getvalue()
 
 
-def _bones(tree: Tree, effectors: Effectors, p: Array, s: Array) -> list[tuple[Array, Array]]:
+def bones(tree: Tree, effectors: Effectors, p: Array, s: Array) -> list[tuple[Array, Array]]:
     """Start and end of each straight piece of the body."""
     joints = [
         (p[parent] if parent >= 0 else np.zeros(3), p[j]) for j, parent in enumerate(tree.parents)

@@ -80,7 +80,7 @@ class Scene:
         )  # fmt: skip
         self.cameras = Cameras(self.renderer, aspect, scale)
         self.look_from(stage.side)
-        self.driver = Driver(self.renderer, nodes)
+        self.driver = Driver(self.renderer, nodes, description=stage.words)
         self._made: dict[str, Layer] = {}  # in the order of their nodes in the driver
         self._on: set[str] = set()
         self._dark = dark

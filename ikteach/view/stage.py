@@ -36,12 +36,14 @@ class View(Protocol):
     """What can be asked of any renderer.
 
     widget   what to display
+    stage    which figures stand where
     layers   {name: whether it is drawn}, for the names in `LAYERS`
     dark     whether the background is dark; may be set at any time
     """
 
     widget: Any
     dark: bool
+    stage: "Stage"
 
     @property
     def layers(self) -> dict[str, bool]:
@@ -136,6 +138,15 @@ class Stage:
     def spread(self) -> float:
         """Half the width that all figures need [m]."""
         return float(self.places[-1, 0]) + 1.2 * self.unit
+
+    @property
+    def words(self) -> str:
+        """What can be seen, in words."""
+        what = "human" if self.human else "planar figure" if self.planar else "figure"
+        named = [name for name in self.names if name]
+        who = f"{len(self)} {what}s" if len(self) > 1 else f"A {what}"
+        who += f" ({', '.join(named)})" if named else ""
+        return f"{who} with targets for {', '.join(self.effectors.names)}."
 
     def name_at(self, f: int) -> list[float]:
         """Where the name of figure f is, from its place: over its head, or in a list beside it."""

@@ -1,0 +1,153 @@
+"""Chapter 8. Runs made to be compared: from many poses at once, at any rate, counted fairly."""
+
+from collections.abc import Mapping
+from math import radians
+from time import perf_counter
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ikteach.arrays import Array, ArrayLike, Index
+from ikteach.body import Effectors, Tree, forward, jacobian, locate
+from ikteach.motion.step import Cap, solver_of, step, whole
+from ikteach.motion.track import Track
+from ikteach.solvers import SOLVERS, Solver, name_of, transpose
+
+SMALL = radians(0.1)  # [rad]; a joint that turns less in a frame counts as standing
+
+
+def capped(solver: Solver, max_step: float | None, chains: Index, cap: Cap = whole) -> Solver:
+    """`solver` with its step shortened to max_step [rad] by `cap`; None leaves it as it is.
+
+    For races in which each method has a cap of its own. `Effectors.chains` are the chains.
+    """
+
+    def shortened(J: Array, e: Array) -> Array:
+        dtheta = solver(J, e)
+        return dtheta if max_step is None else cap(dtheta, max_step, chains)
+
+    shortened.__name__ = name_of(solver)
+    return shortened
+
+
+class Downhill(NamedTuple):
+    """What a step of the transpose promises and what it brings, for each gain (g,).
+
+    promised  (g,)  ‖e − gain α JJᵀe‖², by the linear model [m²]
+    actual    (g,)  ‖e‖² at θ + gain α Jᵀe [m²]
+    """
+
+    promised: Array
+    actual: Array
+
+
+def downhill(
+    tree: Tree, effectors: Effectors, theta: ArrayLike, targets: ArrayLike, gains: ArrayLike
+) -> Downhill:
+    """Squared error along the transpose's step from θ (n,) to targets (k, 3), for gains (g,).
+
+    Limits are not asked.
+    """
+    theta, gains = np.asarray(theta, dtype=float), np.asarray(gains, dtype=float)[:, None]
+    frames = forward(tree, theta)
+    goal = np.asarray(targets, dtype=float)
+    e = np.ravel(goal - locate(frames, effectors))
+    J = jacobian(tree, frames, effectors)
+    dtheta = transpose(J, e)
+    left = goal - locate(forward(tree, theta + gains * dtheta), effectors)
+    return Downhill(
+        np.square(e - gains * (J @ dtheta)).sum(axis=-1), np.square(left).sum(axis=(-1, -2))
+    )
+
+
+def starts(tree: Tree, count: int, *, spread: float = 0.5, seed: int = 0) -> Array:
+    """The rest pose and others at random, (count, n) [rad]; equal seeds give equal poses.
+
+    Each joint turns from rest towards one of its limits, at most by the share `spread` of the way
+    (half a turn where there is no limit).
+    """
+    rng = np.random.default_rng(seed)
+    lower = np.maximum(tree.lower, tree.rest - np.pi)
+    upper = np.minimum(tree.upper, tree.rest + np.pi)
+    way = rng.uniform(-spread, spread, size=(count, len(tree)))
+    way[:1] = 0
+    return tree.rest + np.where(way < 0, way * (tree.rest - lower), way * (upper - tree.rest))
+
+
+def reversals(run: Track) -> Array:
+    """How often a joint turns back, on average over joints and time, (...) [1/s].
+
+    A reversal is a frame in which a joint turns against its turn of the frame before, by more than
+    0.1° both times. A joint that swings once a second has two a second.
+    """
+    before = np.broadcast_to(run.start, run.theta.shape[1:])[None]
+    turn = np.diff(np.concatenate([before, run.theta]), axis=0)
+    moving = abs(turn) > SMALL
+    back = (turn[1:] * turn[:-1] < 0) & moving[1:] & moving[:-1]
+    elapsed = run.times[-1] - run.times[0]
+    return back.sum(axis=0).mean(axis=-1) / elapsed if elapsed else np.zeros(run.theta.shape[1:-1])
+
+
+def circle(
+    times: ArrayLike, *, centre: ArrayLike = (2.4, 0.0, 0.0), radius: float = 0.8, turn: float = 2.0
+) -> Array:
+    """A target that goes round in the plane z = const, at times (T,) [s]: (T, 1, 3) [m].
+
+    `turn` is the time of one round [s]. With the arm of 3 m a quarter of this one is out of reach.
+    """
+    phase = 2 * np.pi * np.asarray(times, dtype=float)[:, None] / turn
+    way = np.stack([np.cos(phase), np.sin(phase), np.zeros_like(phase)], axis=-1)
+    return np.asarray(centre) + radius * way
+
+
+def iterations(
+    tree: Tree,
+    effectors: Effectors,
+    targets: ArrayLike,
+    solver: Solver | str,
+    *,
+    theta: ArrayLike | None = None,
+    within: float = 0.01,
+    most: int = 500,
+    **options: Any,
+) -> Array:
+    """Steps until every effector is within so many metres of its target (..., k, 3): (...).
+
+    Infinite where `most` steps are not enough. `options` go to `step`.
+    """
+    goal = np.asarray(targets, dtype=float)
+    pose = np.asarray(tree.rest if theta is None else theta, dtype=float)
+    batch = np.broadcast_shapes(pose.shape[:-1], goal.shape[:-2])
+    pose = np.broadcast_to(pose, (*batch, len(tree)))
+    count = np.full(batch, np.inf)
+    for n in range(most + 1):
+        gap = np.linalg.norm(goal - locate(forward(tree, pose), effectors), axis=-1)
+        count = np.where((gap <= within).all(axis=-1), np.minimum(count, n), count)
+        if n == most or np.isfinite(count).all():
+            break
+        pose = step(tree, pose, effectors, goal, solver, **options).theta
+    return count
+
+
+def step_times(
+    tree: Tree,
+    effectors: Effectors,
+    targets: ArrayLike,
+    methods: Mapping[str, Solver] = SOLVERS,
+    *,
+    rounds: int = 15,
+    **options: Any,
+) -> dict[str, float]:
+    """Wall time of one step of each method [s], on targets (T, k, 3) from the rest pose.
+
+    The methods take turns, round by round, and the median of the rounds is taken, so that what
+    else the machine does falls on all alike.
+    """
+    seconds: dict[str, list[float]] = {name: [] for name in methods}
+    for _ in range(rounds):
+        for name, solver in methods.items():
+            pose, function, began = tree.rest, solver_of(solver), perf_counter()
+            for goal in np.asarray(targets):
+                pose = step(tree, pose, effectors, goal, function, **options).theta
+            seconds[name].append((perf_counter() - began) / len(np.asarray(targets)))
+    return {name: float(np.median(times)) for name, times in seconds.items()}

@@ -1,0 +1,180 @@
+"""A bench: sliders and buttons over a picture that answers them, for chapters 3, 5 and 6."""
+
+import asyncio
+import html
+import traceback
+from collections.abc import Callable, Mapping
+from typing import Any, ClassVar, NamedTuple
+
+import ipywidgets as widgets
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from ikteach.view.picture import Picture
+from ikteach.view.plots import as_png
+
+WIDE = {"description_width": "190px"}
+
+
+class Shown(NamedTuple):
+    """What a bench shows: a picture, the same in words, and what stands under it (HTML)."""
+
+    png: bytes
+    words: str
+    below: str = ""
+
+
+class Canvas:
+    """A figure of which only the `moving` artists are drawn anew; the rest stays as it was."""
+
+    def __init__(self, figure: Figure, moving: list[Artist]) -> None:
+        self._moving, self._canvas = moving, FigureCanvasAgg(figure)
+        for artist in moving:
+            artist.set_animated(True)
+        self._canvas.draw()
+        self._still = self._canvas.copy_from_bbox(figure.bbox)
+
+    def png(self) -> bytes:
+        """The figure as it is now, as PNG."""
+        self._canvas.restore_region(self._still)
+        for artist in self._moving:
+            artist.axes.draw_artist(artist)  # type: ignore[union-attr]
+        return as_png(np.asarray(self._canvas.buffer_rgba()))
+
+
+class Bench(widgets.VBox):  # type: ignore[misc]
+    """Controls, and a picture that `show(**values)` makes of their values whenever one moves.
+
+    controls  {name: widget with a value}
+    buttons   {label: what it does}; then the picture is made anew
+    slot      only one bench of a slot lives at a time: to run a cell again closes the older one
+
+    What goes wrong in `show` or in a button is told in the bench, in words, and the bench stays.
+    """
+
+    _living: ClassVar[dict[str, "Bench"]] = {}
+
+    def __init__(
+        self,
+        show: Callable[..., Shown],
+        controls: Mapping[str, Any],
+        *,
+        slot: str,
+        buttons: Mapping[str, Callable[[], None]] | None = None,
+    ) -> None:
+        if slot in self._living:
+            self._living.pop(slot).close()
+        self.controls = dict(controls)
+        self._show, self._slot, self._stale = show, slot, False
+        self._waiting: list[Callable[[], None]] = []
+        self._loop = running_loop()
+        self._picture, self._below, self._alert = Picture(), widgets.HTML(), widgets.HTML()
+        self.buttons = {label: widgets.Button(description=label) for label in buttons or {}}
+        for label, act in (buttons or {}).items():
+            self.buttons[label].on_click(lambda _, act=act: self._after(act))
+        for control in self.controls.values():
+            control.observe(lambda _: self._after(None), "value")
+        rows = [*self.controls.values()]
+        if self.buttons:
+            rows.append(widgets.HBox(list(self.buttons.values())))
+        super().__init__([*rows, self._alert, self._picture, self._below])
+        self._living[slot] = self
+        self.refresh()
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """What the controls say now."""
+        return {name: control.value for name, control in self.controls.items()}
+
+    @property
+    def words(self) -> str:
+        """What the picture shows, for those who cannot see it."""
+        return str(self._picture.alt)
+
+    def refresh(self) -> None:
+        """Do what buttons have asked for, and make the picture anew."""
+        waiting, self._waiting, self._stale = self._waiting, [], False
+        try:
+            for act in waiting:
+                act()
+            png, words, below = self._show(**self.values)
+        except Exception as error:
+            self._alert.value = alert(error)
+            return
+        self._alert.value = ""
+        self._picture.png, self._picture.alt, self._below.value = png, words, below
+
+    def close(self) -> None:
+        """Free all that the page and the kernel hold of it."""
+        if self._living.get(self._slot) is self:
+            del self._living[self._slot]
+        if getattr(self, "comm", None) is None:
+            return
+        parts = [*self.controls.values(), *self.buttons.values()]
+        for widget in (*parts, self._picture, self._below, self._alert):
+            widget.close()
+        super().close()
+
+    def _after(self, act: Callable[[], None] | None) -> None:
+        """Note what was asked for, and see to it that it is done; from any thread."""
+        if act is not None:
+            self._waiting.append(act)
+        self._stale = True
+        if self._loop is None or self._loop.is_closed():
+            self.refresh()
+        else:
+            self._loop.call_soon_threadsafe(self._catch_up)
+
+    def _catch_up(self) -> None:
+        if self._stale:  # of several moves at once, the last one is drawn
+            self.refresh()
+
+    def _repr_mimebundle_(self, **kwargs: Any) -> Any:
+        """The live widget, and beside it a still for places without a kernel."""
+        bundle = super()._repr_mimebundle_(**kwargs)
+        return {**bundle, "image/png": self._picture.png, "text/plain": self.words}
+
+
+def slider(label: str, value: float, low: float, high: float, step: float) -> Any:
+    """A slider with room for its label; whole numbers where the step is one."""
+    kind = widgets.IntSlider if isinstance(step, int) else widgets.FloatSlider
+    return kind(
+        value=value, min=low, max=high, step=step, description=label, style=WIDE,
+        layout=widgets.Layout(width="560px", max_width="100%"),
+    )  # fmt: skip
+
+
+def log_slider(label: str, value: float, low: float, high: float, step: float = 0.05) -> Any:
+    """A slider from 10^low to 10^high."""
+    return widgets.FloatLogSlider(
+        value=value, min=low, max=high, step=step, description=label, style=WIDE,
+        readout_format=".3g", layout=widgets.Layout(width="560px", max_width="100%"),
+    )  # fmt: skip
+
+
+def choice(label: str, options: list[str], value: str | None = None) -> Any:
+    """Buttons of which one is pressed."""
+    style = {**WIDE, "button_width": "auto"}
+    return widgets.ToggleButtons(
+        options=options, value=value or options[0], description=label, style=style
+    )
+
+
+def alert(error: Exception) -> str:
+    """What went wrong, for a person: the sentence, and folded away where it was."""
+    where = "".join(traceback.format_exception(error)[-2:])
+    return (
+        f'<div role="alert" style="border-left:4px solid #d55e00;padding:4px 10px">'
+        f"<b>That did not work.</b> {html.escape(str(error))}"
+        f"<details><summary>where</summary><pre>{html.escape(where)}</pre></details></div>"
+    )
+
+
+def running_loop() -> asyncio.AbstractEventLoop | None:
+    """The kernel's loop, or none outside a notebook."""
+    try:
+        return asyncio.get_running_loop()
+    except RuntimeError:
+        return None

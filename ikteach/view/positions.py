@@ -1,0 +1,93 @@
+"""Where the targets are: the one truth that handles, sliders, number boxes and keys change."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from ikteach.arrays import Array, ArrayLike
+
+AXES = "xyz"
+KEEP = 200  # moves that can be taken back
+
+
+class Positions:
+    """The positions of k targets (k, 3) [m], each within its range, and how to take moves back.
+
+    names      what the targets are called
+    low, high  (k, 3) the range of each coordinate [m]
+
+    It stores, and tells whoever asked with `on_change`; it solves nothing.
+    """
+
+    def __init__(
+        self, names: Sequence[str], start: ArrayLike, low: ArrayLike, high: ArrayLike
+    ) -> None:
+        self.names = list(names)
+        shape = (len(self.names), 3)
+        self._now = np.array(start, dtype=float)
+        if self._now.shape != shape:
+            raise ValueError(f"{shape[0]} targets need positions {shape}, not {self._now.shape}")
+        self.low = np.broadcast_to(np.asarray(low, dtype=float), shape)
+        self.high = np.broadcast_to(np.asarray(high, dtype=float), shape)
+        self._past: list[Array] = []
+        self._tell: list[Callable[[int, Array], None]] = []
+        for i, position in enumerate(self._now):
+            self.check(i, position)
+
+    @property
+    def now(self) -> Array:
+        """A copy of the positions, (k, 3) [m]."""
+        return self._now.copy()
+
+    def on_change(self, tell: Callable[[int, Array], None]) -> None:
+        """Call tell(index, position (3,)) after each move, from whichever thread it came."""
+        self._tell.append(tell)
+
+    def move(self, index: int, position: ArrayLike, *, again: bool = False) -> None:
+        """Move one target; ValueError with the range if it would leave it.
+
+        `again` goes on with the move before, so that one `undo` takes back a whole drag.
+        """
+        new = np.asarray(position, dtype=float)
+        self.check(index, new)
+        if not (again and self._past):
+            self._past = [*self._past[1 - KEEP :], self.now]
+        self._now[index] = new
+        self._told(index)
+
+    def drag(self, index: int, position: ArrayLike, *, again: bool = False) -> None:
+        """Move one target, and stop it at the edge of its range."""
+        inside = np.clip(np.asarray(position, dtype=float), self.low[index], self.high[index])
+        self.move(index, inside, again=again)
+
+    def undo(self) -> int | None:
+        """Take the last move back; the target that moved, or None if there is nothing left."""
+        if not self._past:
+            return None
+        before = self._past.pop()
+        moved = np.flatnonzero((before != self._now).any(axis=-1))
+        self._now[:] = before
+        for index in moved:
+            self._told(int(index))
+        return int(moved[0]) if len(moved) else None
+
+    def words(self, index: int) -> str:
+        """Where a target is, to be read or heard."""
+        x, y, z = self._now[index]
+        return f"{self.names[index]}: x {x:.2f}, y {y:.2f}, z {z:.2f} m"
+
+    def _told(self, index: int) -> None:
+        for tell in self._tell:
+            tell(index, self._now[index].copy())
+
+    def check(self, index: int, position: Array) -> None:
+        """ValueError with the range if target `index` may not be there."""
+        if position.shape != (3,):
+            raise ValueError(f"{self.names[index]} needs three numbers, not {position.tolist()}")
+        for axis, value, low, high in zip(
+            AXES, position, self.low[index], self.high[index], strict=True
+        ):
+            if not low - 1e-9 <= value <= high + 1e-9:
+                where = f"{axis} of {self.names[index]} goes from {low:.2f} to {high:.2f} m"
+                what = f"{value:g} is not between them" if value == value else "this is no number"
+                raise ValueError(f"{where}; {what}")
