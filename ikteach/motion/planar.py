@@ -129,6 +129,11 @@ class PlanarReach:
         return self.standing[self.method].tick.theta
 
     @property
+    def settled(self) -> bool:
+        """Whether nothing moves any more, by any method."""
+        return all(one.settled for one in self.standing.values())
+
+    @property
     def within(self) -> bool:
         """Whether the hand can be at the cursor with all that the shown method wishes."""
         return self._aimed if self.method == "cramer" else self._somehow

@@ -93,9 +93,16 @@ class Standing:
             self.period = int(period(np.array(self.poses)))
 
     @property
+    def settled(self) -> bool:
+        """Whether nothing moves any more."""
+        return self.ticks > 0 and self.moves <= STILL
+
+    @property
     def words(self) -> str:
         """How it stands, in words."""
         tick, rest = self.tick, self.moves <= STILL
+        if not self.ticks:
+            return "about to move"
         far = f"{100 * tick.distance:.1f} cm away"
         if self.period:
             return f"oscillates, {far}: its poses repeat every {self.period} ticks"
@@ -107,7 +114,7 @@ class Standing:
             return f"arrived in {self.arrived} ticks"
         if tick.independence <= SINGULAR:
             return f"det is near 0: no step, {far}"
-        return f"stuck {far}" if rest and self.ticks else "on its way"
+        return f"stuck {far}" if rest else "on its way"
 
 
 def placed(cursor: ArrayLike, room: Array) -> Array:
@@ -202,6 +209,11 @@ class Reach:
     def side(self) -> str:
         """The side whose hand is nearer to the cursor's: "r" or "l"."""
         return "r" if self.cursor[0] < 0 else "l"
+
+    @property
+    def settled(self) -> bool:
+        """Whether nothing moves any more, by any method."""
+        return all(one.settled for one in self.standing.values())
 
     @property
     def within(self) -> bool:

@@ -4,6 +4,7 @@ from ikteach.view.bend import BendBench
 from ikteach.view.player import GaitPlayer
 from ikteach.view.posing import ColumnPoser, Poser
 from ikteach.view.scene import Scene
+from ikteach.view.simulator import Simulator
 from ikteach.view.still import StillScene
 
-__all__ = ["BendBench", "ColumnPoser", "GaitPlayer", "Poser", "Scene", "StillScene"]
+__all__ = ["BendBench", "ColumnPoser", "GaitPlayer", "Poser", "Scene", "Simulator", "StillScene"]
