@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 
 import ipywidgets as widgets
 import numpy as np
+import pandas as pd
 
 from ikteach.arrays import Array
 from ikteach.body import Effectors
@@ -93,15 +94,15 @@ class Simulator(widgets.VBox):  # type: ignore[misc]
                 self._status,
                 widgets.HBox([self.controls[name] for name in ("playing", "step", "reset")]),
                 self.controls["method"],
-                self.targets,
                 *(self.controls[name] for name in ("parts", "max_step", "view")),
             ],
-            layout=widgets.Layout(flex="1 1 420px", min_width="380px"),
+            layout=widgets.Layout(flex="1 1 400px", min_width="360px"),
         )
+        self.scene.widget.layout = widgets.Layout(flex="0 0 auto", width="552px")
         beside = widgets.HBox(
             [self.scene.widget, panel], layout=widgets.Layout(flex_flow="row wrap")
         )
-        super().__init__([beside, self._alert, self._table])
+        super().__init__([beside, self.targets, self._alert, self._table])
         self._living[slot] = self
         self._report()
 
@@ -157,8 +158,8 @@ class Simulator(widgets.VBox):  # type: ignore[misc]
             "step": widgets.Button(description="Step"),
             "reset": widgets.Button(description="Reset"),
             "method": choice("Method", list(session.ways), session.method),
-            "parts": slider("n, parts of the error", session.parts, 1, 30, 1),
-            "max_step": slider("largest step [° a tick]", cap, 1.0, 45.0, 1.0),
+            "parts": _narrow("n, parts of the error", session.parts, 1, 30, 1),
+            "max_step": _narrow("largest step [° a tick]", cap, 1.0, 45.0, 1.0),
             "view": widgets.Dropdown(options=self._sides(), description="View"),
         }
         made["method"].style.description_width = "60px"
@@ -284,8 +285,16 @@ class Simulator(widgets.VBox):  # type: ignore[misc]
             self._table.value = table
 
 
+def _narrow(label: str, value: float, low: float, high: float, step: float) -> Any:
+    """A slider that fits beside the scene."""
+    made = slider(label, value, low, high, step)
+    made.layout.width, made.style.description_width = "400px", "150px"
+    return made
+
+
 def _table(session: Reach | PlanarReach) -> str:
     table = standings(session).rename(index={session.method: f"{session.method} (shown)"})
+    table["ticks"] = ["–" if pd.isna(ticks) else ticks for ticks in table["ticks"]]
     return table.to_html(
         float_format="{:.3g}".format, na_rep="–", border=0, classes="ikteach-table"
     )
