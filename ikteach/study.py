@@ -16,7 +16,8 @@ from ikteach.motion.experiment import reversals
 from ikteach.motion.packages import Body
 from ikteach.motion.planar import PlanarReach
 from ikteach.motion.reach import Reach, trial
-from ikteach.motion.ways import WAYS, Way
+from ikteach.motion.step import numbers
+from ikteach.motion.ways import WAYS, Way, advance
 from ikteach.solvers import SOLVERS, Solver
 
 MEASURES = ["mean", "median", "p95", "max", "jitter", "capped", "held", "smallest_sigma"]
@@ -269,3 +270,33 @@ def reaches(cursors: ArrayLike, ways: Mapping[str, Way] = WAYS, **options: Any) 
             "unsettled": (~run.settled & (run.period == 0)).mean(),
         }
     return pd.DataFrame.from_dict(rows, orient="index").rename_axis("method")
+
+
+def follow(cursors: ArrayLike, way: Way, ticks: int | None = None, **options: Any) -> pd.DataFrame:
+    """One way from rest after cursors (T, 3), or for so many `ticks` after (3,): a row a tick.
+
+    distance [cm]      from the hand to the cursor
+    elbow, back [°]    how far they are bent
+    det, smallest σ    of J in use, as in `standings`
+    largest step [°]   of a joint, the neck's left out
+    options            go to `motion.ways.advance`
+    """
+    body, places = Body(), numbers("the cursors", cursors)
+    if ticks is not None:
+        places = np.broadcast_to(places, (ticks, 3))
+    theta, rows = body.tree.rest, []
+    for cursor in places:
+        tick = advance(body, theta, cursor, way, **options)
+        turned = np.delete(abs(tick.theta - theta), body.neck)
+        theta = tick.theta
+        rows.append(
+            {
+                "distance [cm]": 100 * float(tick.distance),
+                "elbow [°]": np.degrees(theta[body.arm("r" if cursor[0] < 0 else "l")[2]]),
+                "back [°]": np.degrees(theta[body.back]),
+                "det": float(tick.det),
+                "smallest σ": float(tick.sigma),
+                "largest step [°]": np.degrees(turned.max()),
+            }
+        )
+    return pd.DataFrame(rows, index=pd.RangeIndex(1, len(rows) + 1, name="tick"))

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Index, Mask, frozen
-from ikteach.body import Effectors, Tree
+from ikteach.body import Effectors, Tree, forward, jacobian, partials
 from ikteach.body.figures import TOGETHER, Figure, simulator
 
 MIDDLE = 0.05  # [m]; so near the middle plane no package answers
@@ -112,6 +112,18 @@ def in_chest(body: Body, point: Array, back: ArrayLike) -> Array:
     back = np.asarray(back, dtype=float)
     low = about_x(-back, point - [0, body.waist, 0])
     return about_x(-back, low - [0, body.segment, 0])
+
+
+def by_columns(body: Body, theta: Array, package: Package) -> Array:
+    """J (..., 3, 3) of a package at pose θ (..., n), from the geometric columns, J C."""
+    J = jacobian(body.tree, forward(body.tree, theta), body.hands[package.side])
+    return J @ body.columns(package.degrees)
+
+
+def by_differences(body: Body, theta: Array, package: Package) -> Array:
+    """J (..., 3, 3) of a package at pose θ (..., n), from central differences."""
+    J = partials.by_differences(body.tree, theta, body.hands[package.side])
+    return J @ body.columns(package.degrees)
 
 
 def by_hand(body: Body, theta: Array, package: Package) -> Array:
