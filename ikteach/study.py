@@ -13,7 +13,7 @@ from ikteach.arrays import ArrayLike, Mask
 from ikteach.body import Effectors, Tree
 from ikteach.motion import Track, reachable, track
 from ikteach.motion.experiment import reversals
-from ikteach.motion.packages import Body
+from ikteach.motion.packages import Body, backs_reach
 from ikteach.motion.planar import PlanarReach
 from ikteach.motion.reach import Reach, trial
 from ikteach.motion.step import numbers
@@ -285,8 +285,8 @@ def follow(cursors: ArrayLike, way: Way, ticks: int | None = None, **options: An
     if ticks is not None:
         places = np.broadcast_to(places, (ticks, 3))
     theta, rows = body.tree.rest, []
-    for cursor in places:
-        tick = advance(body, theta, cursor, way, **options)
+    for cursor, backs in zip(places, backs_reach(body, places), strict=True):
+        tick = advance(body, theta, cursor, way, backs=backs, **options)
         turned = np.delete(abs(tick.theta - theta), body.neck)
         theta = tick.theta
         rows.append(

@@ -75,7 +75,7 @@ class Simulator(widgets.VBox):  # type: ignore[misc]
         if slot in self._living:
             self._living.pop(slot).close()
         self.session = session if session is not None else Reach(**options)
-        self.playing = True
+        self.playing, self._quiet = True, False
         self._changes, self._slot = 0, slot
         self._asked: deque[Callable[[], None]] = deque()
         self._task: asyncio.Task[None] | None = None
@@ -184,6 +184,8 @@ class Simulator(widgets.VBox):  # type: ignore[misc]
     # What was asked for. Callbacks may come on another thread: they store, and the loop acts.
 
     def _ask(self, act: Callable[[], None]) -> None:
+        if self._quiet:
+            return
         self._asked.append(act)
         if self._loop is None or self._loop.is_closed():
             self._answer()
@@ -209,9 +211,15 @@ class Simulator(widgets.VBox):  # type: ignore[misc]
         if not np.allclose(place, self.session.cursor, atol=1e-9):
             self.session.put(place)
 
-    def _step(self) -> None:
+    def _stop(self) -> None:
+        """Pause, and have the button show it without its asking for anything."""
+        self._quiet = True
         self.pause()
+        self._quiet = False
         self._play(False)
+
+    def _step(self) -> None:
+        self._stop()
         self.session.tick()
 
     def _say(self, words: str) -> None:
@@ -253,7 +261,7 @@ class Simulator(widgets.VBox):  # type: ignore[misc]
             self._draw()
             self._report()
         except Exception as error:  # a student's own solver, most likely
-            self.pause()
+            self._stop()
             self._say(alert(error))
 
     @property
