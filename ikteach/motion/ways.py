@@ -27,7 +27,7 @@ from ikteach.motion.packages import (
 )
 from ikteach.motion.step import clip, hold, numbers, step
 from ikteach.names import unknown
-from ikteach.solvers import SOLVERS, Solver, cramer, determinant, independence
+from ikteach.solvers import SOLVERS, Solver, cramer, determinant, independence, name_of
 
 EASE = radians(1)  # the most that a joint goes towards rest in a tick
 ARRIVED = 0.01  # [m]
@@ -193,6 +193,7 @@ def _reach(
         dq = np.where(far[:, None], way.solver(ours, e / parts), 0)
         return dq @ used.T + way.rest(J @ body.C, idle) @ body.C.T
 
+    solve.__name__ = name_of(way.solver)  # what `step` calls it where its answer is not finite
     done = step(
         body.tree, theta, body.hands[package.side], cursor[:, None, :], solve,
         max_step=max_step, limits=clip if way.packaged else hold,

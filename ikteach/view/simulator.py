@@ -77,6 +77,7 @@ class Simulator(widgets.VBox):  # type: ignore[misc]
         self.session = session if session is not None else Reach(**options)
         self.playing, self._quiet = True, False
         self._changes, self._slot = 0, slot
+        self._known = self.session.cursor  # the one that the handles and sliders know of
         self._asked: deque[Callable[[], None]] = deque()
         self._task: asyncio.Task[None] | None = None
         self._loop = running_loop()
@@ -210,6 +211,7 @@ class Simulator(widgets.VBox):  # type: ignore[misc]
     def _put(self, place: Array) -> None:
         if not np.allclose(place, self.session.cursor, atol=1e-9):
             self.session.put(place)
+        self._known = self.session.cursor
 
     def _stop(self) -> None:
         """Pause, and have the button show it without its asking for anything."""
@@ -271,8 +273,9 @@ class Simulator(widgets.VBox):  # type: ignore[misc]
 
     def _draw(self) -> None:
         session = self.session
-        if not np.allclose(self.targets.positions[0], session.cursor, atol=1e-9):
-            self.targets.move(0, session.cursor)  # it was put there by a cell
+        if session.cursor is not self._known:  # it was put there by a cell, or by a reset
+            self._known = session.cursor
+            self.targets.move(0, session.cursor)
         self.scene.point(session, self._changes)
 
     def _report(self) -> None:
