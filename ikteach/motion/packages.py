@@ -24,11 +24,11 @@ SEARCH = 105  # poses of the back that are looked at, half a degree apart
 
 
 class Package(NamedTuple):
-    """Three degrees of motion that reach together, on the left (`side` "l") or the right ("r")."""
+    """Degrees of motion that reach together, three in CS 490; `side` is "l" (left) or "r"."""
 
     name: str
     side: str
-    degrees: tuple[str, str, str]
+    degrees: tuple[str, ...]
 
 
 def _packages() -> tuple[Package, ...]:

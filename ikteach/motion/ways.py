@@ -213,7 +213,7 @@ def figures_of(J: Array, packaged: bool) -> Array:
 def together(side: str) -> Package:
     """Arm and back in one, four degrees of motion: what the general methods reach with."""
     arm, back = PACKAGES["rl".index(side)], "back"
-    return Package(f"{arm.name} and back together", side, (*arm.degrees, back))  # type: ignore[arg-type]
+    return Package(f"{arm.name} and back together", side, (*arm.degrees, back))
 
 
 def homewards(body: Body, theta: Array, besides: tuple[str, ...] = ()) -> Array:

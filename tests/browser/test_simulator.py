@@ -148,7 +148,7 @@ def test_depth_and_keypad(reach: Notebook) -> None:
 
 def test_methods_and_the_middle_by_keyboard(reach: Notebook) -> None:
     """In the middle no package answers; without packages a hand comes."""
-    box = reach.page.get_by_role("spinbutton").first
+    box = reach.page.locator(".ikteach-targets input[type=number]").first
     box.focus()
     reach.page.keyboard.press("Control+a")
     reach.page.keyboard.type("0.02")
