@@ -148,12 +148,8 @@ def test_depth_and_keypad(reach: Notebook) -> None:
 
 def test_methods_and_the_middle_by_keyboard(reach: Notebook) -> None:
     """In the middle no package answers; without packages a hand comes."""
-    box = reach.page.locator(".ikteach-targets input[type=number]").first
-    box.focus()
-    reach.page.keyboard.press("Control+a")
-    reach.page.keyboard.type("0.02")
-    reach.page.keyboard.press("Enter")
-    settle(reach, f"float({SESSION}.cursor[0])", 0.02)
+    take_hold(reach)
+    press(reach, "ArrowRight", 7, 0, 0.0)
     word(reach, "in the middle")
     button = reach.page.get_by_role("button", name="dls", exact=True).first
     button.focus()
