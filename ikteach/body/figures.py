@@ -117,7 +117,7 @@ def heels(tree: Tree) -> Effectors:
 
 
 # Rows that one angle turns. The tree keeps a row each, so that `forward` and `jacobian` need not
-# know; who moves the figure gives both the same angle (`ikteach.motion.reach.coupling`).
+# know; who moves the figure gives both the same angle (`ikteach.motion.packages.coupling`).
 TOGETHER = (("back.lower", "back.upper"),)
 
 
@@ -152,22 +152,24 @@ def simulator() -> Figure:
     return Figure(tree, Effectors.of(tree, points))
 
 
-def planar_model() -> Figure:
-    """The earlier stage of CS 490: an arm of three links in the plane, with limits, 1.2 m long."""
-    lengths = 0.5, 0.4, 0.3
-    limits = (-180, 180), (-150, 150), (-120, 120)
-    rest = 60, -60, -45
+def planar_model(links: int = 3) -> Figure:
+    """The earlier stage of CS 490: an arm in the plane with limits, of at most three links.
+
+    They are 0.5, 0.4 and 0.3 m long; the effector "hand" is at the end of the last.
+    """
+    lengths, limits, rest = (0.5, 0.4, 0.3), (180, 150, 120), (60, -60, -45)
+    if links not in (1, 2, 3):
+        raise ValueError(f"the planar model has 1, 2 or 3 links, not {links!r}")
     joints = [
         Joint(
-            f"joint{i}", f"joint{i - 1}" if i > 1 else None, (offset, 0, 0), Z,
-            lower=radians(lower), upper=radians(upper), rest=radians(angle),
+            f"joint{i + 1}", f"joint{i}" if i else None, (lengths[i - 1] if i else 0, 0, 0), Z,
+            lower=radians(-limits[i]), upper=radians(limits[i]), rest=radians(rest[i]),
         )
-        for i, offset, (lower, upper), angle in zip(
-            (1, 2, 3), (0.0, *lengths), limits, rest, strict=False
-        )
+        for i in range(links)
     ]  # fmt: skip
     tree = Tree.of(joints)
-    return Figure(tree, Effectors.of(tree, {"hand": ("joint3", (lengths[-1], 0, 0))}))
+    hand = (joints[-1].name, (lengths[links - 1], 0, 0))
+    return Figure(tree, Effectors.of(tree, {"hand": hand}))
 
 
 def _simulator_arm(side: str, x: int) -> list[Joint]:

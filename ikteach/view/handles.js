@@ -12,6 +12,9 @@ const LATE = 600; // [ms] after which a target goes where the kernel says
 const TURN = 0.1, ZOOM = 1.1; // one key press: of the camera [rad], of its distance
 const KEYS = { ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0], ArrowDown: [0, -1, 0],
                ArrowUp: [0, 1, 0], PageDown: [0, 0, 1], PageUp: [0, 0, -1] };
+const KEYPAD = { Numpad4: "ArrowLeft", Numpad6: "ArrowRight", Numpad2: "ArrowDown",
+                 Numpad8: "ArrowUp", Numpad9: "PageUp", Numpad3: "PageDown" }; // with num lock, too
+const named = (event) => KEYPAD[event.code] ?? event.key;
 
 async function resolve(manager, references) {
   const models = await Promise.all(
@@ -185,8 +188,8 @@ async function render({ model, el }) {
       choose(next);
       if (next < 0) invite();
     } else if (event.key === "Escape") undo();
-    else if (!KEYS[event.key]) return;
-    else if (chosen < 0) turn(...KEYS[event.key]);
+    else if (!KEYS[named(event)]) return;
+    else if (chosen < 0) turn(...KEYS[named(event)]);
     else push(event);
     event.preventDefault();
     event.stopPropagation();
@@ -194,11 +197,11 @@ async function render({ model, el }) {
 
   function push(event) { // along that axis of the world which comes nearest to the way on the screen
     const { elements } = camera().matrixWorld;
-    const column = KEYS[event.key].findIndex((part) => part !== 0);
+    const column = KEYS[named(event)].findIndex((part) => part !== 0);
     const way = elements.slice(4 * column, 4 * column + 3);
     const axis = way.reduce((best, part, i) => Math.abs(part) > Math.abs(way[best]) ? i : best, 0);
     const step = vector();
-    step.setComponent(axis, KEYS[event.key][column] * Math.sign(way[axis]) *
+    step.setComponent(axis, KEYS[named(event)][column] * Math.sign(way[axis]) *
                             model.get("step") * (event.shiftKey ? 0.1 : 1));
     move(chosen, where(chosen).add(step), !event.repeat);
   }

@@ -2,6 +2,7 @@
 
 import damping
 import numpy as np
+import reach
 import speed
 from numpy.testing import assert_allclose
 
@@ -32,3 +33,8 @@ def test_following_arrives_where_it_can():
     arrived, jitter = damping.run(damping.dls_following, start, reach)
     assert np.isfinite(jitter).all()
     assert arrived.min() < 30
+
+
+def test_reach_prints_its_tables(capsys):
+    reach.main(cursors=6, ticks=60)
+    assert capsys.readouterr().out.count("\n") == 2 * (3 + len(reach.study.WAYS))

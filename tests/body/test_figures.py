@@ -107,10 +107,17 @@ def test_the_simulator_is_a_human_with_fewer_hinges():
         assert_allclose(hand - shoulder, [0.696 * x, 0, 0], atol=1e-12)
 
 
-def test_the_planar_model_stays_in_its_plane():
-    tree, effectors = figures.planar_model()
-    theta = np.random.default_rng(0).uniform(tree.lower, tree.upper, (50, 3))
+@pytest.mark.parametrize(("links", "length"), [(1, 0.5), (2, 0.9), (3, 1.2)])
+def test_the_planar_model_stays_in_its_plane(links, length):
+    tree, effectors = figures.planar_model(links)
+    theta = np.random.default_rng(0).uniform(tree.lower, tree.upper, (50, links))
     s = locate(forward(tree, theta), effectors)
     assert_allclose(s[..., 2], 0)
-    assert np.linalg.norm(s, axis=-1).max() <= 1.2
-    assert len(tree) == 3
+    assert np.linalg.norm(s, axis=-1).max() <= length + 1e-12
+    assert_allclose(locate(forward(tree, np.zeros(links)), effectors), [[length, 0, 0]])
+
+
+@pytest.mark.parametrize("links", [0, 4, "three"])
+def test_the_planar_model_has_at_most_three_links(links):
+    with pytest.raises(ValueError, match="1, 2 or 3 links"):
+        figures.planar_model(links)
