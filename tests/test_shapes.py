@@ -15,8 +15,8 @@ from ikteach import body as bodies
 from ikteach.body import forward, jacobian, locate
 from ikteach.body.jacobian import cross
 from ikteach.body.tree import Plan, skew
-from ikteach.motion import gait, per_chain, reachable, step, track, whole
 from ikteach.motion import anatomy as anatomy_
+from ikteach.motion import gait, per_chain, reachable, step, track, whole
 from ikteach.motion.anatomy import Anatomy, anatomy, response
 from ikteach.motion.log import Log
 from ikteach.motion.mix import Mix
