@@ -1,5 +1,6 @@
 """The one array type of the package."""
 
+from math import isfinite
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -16,3 +17,9 @@ def frozen(values: ArrayLike, dtype: Any = float) -> Any:
     array = np.array(values, dtype=dtype)
     array.setflags(write=False)
     return array
+
+
+def finite(values: Array) -> bool:
+    """Whether no number is infinite or NaN."""
+    # One product tells of most arrays; only where it is not finite must each number be looked at.
+    return isfinite(np.vdot(values, values)) or bool(np.isfinite(values).all())

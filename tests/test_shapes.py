@@ -82,7 +82,7 @@ SAME = [
     (soft, "(..., n)", lambda g: soft(g.theta, g.T)),
     (whole, "(..., n)", lambda g: whole(g.theta, 0.1, EFFECTORS.chains)),
     (per_chain, "(..., n)", lambda g: per_chain(g.theta, 0.1, EFFECTORS.chains)),
-    (cross, "(..., 3, n)", lambda g: cross(*np.ones((2, *g.batch, 3, 20)))),
+    (cross, "(..., 3, n)", lambda g: cross(*np.ones((2, *g.batch, 4, 20)))),
     (solvers.manipulability, "(...)", lambda g: solvers.manipulability(g.J)),
     (solvers.conditioning, "(...)", lambda g: solvers.conditioning(g.J)),
     (solvers.dls_following, "(..., n)", lambda g: solvers.dls_following(g.J, g.e)),

@@ -6,7 +6,7 @@ from ikteach.arrays import Array, ArrayLike
 from ikteach.body.forward import Frames, locate
 from ikteach.body.tree import Effectors, Tree
 
-YZX = np.array([1, 2, 0])
+YZXY = np.array([1, 2, 0, 1])
 
 
 def jacobian(
@@ -19,22 +19,21 @@ def jacobian(
     targets there it is the second form of thesis section 3.2, v_j × (t_i − p_j).
     """
     s = locate(frames, effectors) if at is None else np.asarray(at, dtype=float)
-    v, p = _as_columns(frames.axes), _as_columns(frames.positions)
-    columns = cross(v, s[..., None] - p)  # (..., k, 3, n)
+    v, p = frames.axes.mT, frames.positions.mT  # (..., 3, n), side by side
+    arms = s.take(YZXY, axis=-1)[..., None] - p.take(YZXY, axis=-2)[..., None, :, :]
+    columns = cross(v.take(YZXY, axis=-2)[..., None, :, :], arms)  # (..., k, 3, n)
     if tree.plan.slides:
-        columns = np.where(tree.slide, v, columns)
+        columns = np.where(tree.slide, v[..., None, :, :], columns)
     columns *= effectors.mask
     return columns.reshape(*columns.shape[:-3], 3 * len(effectors), len(tree))
 
 
 def cross(a: Array, b: Array) -> Array:
-    """a × b along the last axis but one: (a b′ − a′ b)′, where ′ puts y, z, x for x, y, z."""
-    difference = b.take(YZX, axis=-2)
-    difference *= a
-    difference -= a.take(YZX, axis=-2) * b
-    return difference.take(YZX, axis=-2)
+    """a × b of vectors in columns, each given as y, z, x and again y: (..., 4, n) to (..., 3, n).
 
-
-def _as_columns(vectors: Array) -> Array:
-    """(..., n, 3) to (..., 1, 3, n), side by side in memory: a long last axis is the fast one."""
-    return vectors.mT.copy()[..., None, :, :]
+    a × b = (a_y b_z − a_z b_y, a_z b_x − a_x b_z, a_x b_y − a_y b_x): so ordered, the factors of
+    all three are slices.
+    """
+    product = a[..., :3, :] * b[..., 1:, :]
+    product -= a[..., 1:, :] * b[..., :3, :]
+    return product

@@ -100,7 +100,8 @@ def told(deliveries: list[Delivery], folder: Path) -> list[str]:
     new = [delivery.name for delivery in deliveries if delivery.outcome == "copied"]
     count = sum(name.endswith(".ipynb") for name in new)
     others = f", other files: {len(new) - count}" if len(new) > count else ""
-    sentences = [f"copied {count} notebook{'s' * (count != 1)} to {folder}{others}"] if new else []
+    what = f"{count} notebook{'s' * (count != 1)}" if count else f"{len(new)} files"
+    sentences = [f"copied {what} to {folder}{others if count else ''}"] if new else []
     for name, outcome, beside in deliveries:
         newer = f"; the newer version is beside it: {beside}" if beside else ""
         words = {"restored": "restored", "updated": "updated", "kept": "kept yours"}

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ikteach.arrays import Array, ArrayLike, Index, Mask
+from ikteach.arrays import Array, ArrayLike, Index, Mask, finite
 from ikteach.body import Effectors, Tree, forward, jacobian, locate
 from ikteach.solvers import SOLVERS, Solver, name_of
 
@@ -87,7 +87,7 @@ def clip(tree: Tree, theta: Array, dtheta: Array, again: Again) -> tuple[Array, 
 def hold(tree: Tree, theta: Array, dtheta: Array, again: Again) -> tuple[Array, Mask]:
     """Hold the joints that stand at a limit and would cross it, and let the others step again."""
     to, stopped = clip(tree, theta, dtheta, again)
-    if not stopped.any():
+    if not np.count_nonzero(stopped):
         return to, stopped
     held = np.zeros(to.shape, dtype=bool)
     while (crossing := stopped & (to == theta) & ~held).any():
@@ -143,7 +143,7 @@ def step(
     def ask(s: Array) -> Array:
         """What the solver wants of joints with mobility s."""
         dtheta: Array = s * function(J * s[..., None, :], aim)
-        if not np.isfinite(dtheta).all():
+        if not finite(dtheta):
             raise FloatingPointError(f"{name_of(solver)} gave a step that is not finite")
         return dtheta
 
@@ -189,9 +189,9 @@ def checked(
         raise ValueError(f"{n} joints need theta of shape (..., {n}), not {theta.shape}")
     if targets.shape[-2:] != (k, 3):
         raise ValueError(f"{k} effectors need targets of shape (..., {k}, 3), not {targets.shape}")
-    if not np.isfinite(theta).all():
+    if not finite(theta):
         raise ValueError(f"the angle of {_culprit(theta, tree.names)!r} is not finite")
-    if not np.isfinite(targets).all():
+    if not finite(targets):
         culprit = _culprit(targets.swapaxes(-1, -2), effectors.names)
         raise ValueError(f"the target of {culprit!r} is not finite")
     return theta, targets

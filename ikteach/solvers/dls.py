@@ -1,12 +1,10 @@
 """Chapter 5. Damped least squares: nearness to the target against length of the step."""
 
-from functools import cache
-
 import numpy as np
 
-from ikteach.arrays import Array, ArrayLike, frozen
+from ikteach.arrays import Array, ArrayLike
 
-ROUNDING = 1e-13  # of the trace of JJᵀ: damping below it is lost in the rounding of JJᵀ
+ROUNDING = 1e-13  # of the diagonal of JJᵀ: damping below it is lost in the rounding of JJᵀ
 HUGE = 1e150  # its square is still finite
 TINY = 1e-200  # keeps JJᵀ + λ²I invertible where J is all zero
 
@@ -21,24 +19,19 @@ def dls(J: Array, e: Array, *, damping: ArrayLike = 0.1) -> Array:
     Returns (..., n) [rad]. λ = 0 is taken as the smallest that rounding lets us see.
     ValueError if λ is negative or not finite. Source: thesis 4.4.3; Buss 2004, eq. 11.
     """
-    if isinstance(damping, float):  # the common case: np.min of one number costs a product
-        low = high = damping
+    if isinstance(damping, float):  # the common case: an array of one number costs as JJᵀ does
+        fits, lambda2 = 0 <= damping < HUGE, damping * damping + TINY
     else:
         damping = np.asarray(damping, dtype=float)
-        low, high = damping.min(initial=0), damping.max(initial=0)
-    if not (low >= 0 and high < HUGE):  # nor NaN
+        fits = bool(((damping >= 0) & (damping < HUGE)).all())
+        lambda2 = (damping * damping + TINY)[..., None]
+        J = np.broadcast_to(J, np.broadcast_shapes(J.shape, (*damping.shape, 1, 1)))
+    if not fits:  # NaN fits nowhere
         raise ValueError(f"damping must be 0 or more, and finite, not {damping}")
-    JJT = J @ J.mT
-    least = ROUNDING * JJT.trace(axis1=-2, axis2=-1) + TINY
-    lambda2 = np.maximum(np.square(damping), least)[..., None, None]
-    y = np.linalg.solve(JJT + lambda2 * identity(J.shape[-2]), e[..., None])[..., 0]
-    return np.vecmat(y, J)
-
-
-@cache
-def identity(m: int) -> Array:
-    """I (m, m), made once."""
-    return frozen(np.eye(m))
+    A, m = J @ J.mT, J.shape[-2]
+    diagonal = A.reshape(*A.shape[:-2], m * m)[..., :: m + 1]  # a view of A
+    diagonal += np.maximum(lambda2, ROUNDING * diagonal)  # A = JJᵀ + λ²I
+    return np.vecmat(np.linalg.solve(A, e[..., None])[..., 0], J)
 
 
 def dls_following(J: Array, e: Array, *, share: float = 0.5, least: float = 1e-3) -> Array:

@@ -26,7 +26,7 @@ def soft(phi: Array, bound: ArrayLike) -> Array:
 
 def _peak(phi: Array) -> Array:
     """max|φ_j|, and TINY where φ is zero."""
-    return np.maximum(abs(phi).max(axis=-1), TINY)
+    return abs(phi).max(axis=-1, initial=TINY)
 
 
 def sdls(J: Array, e: Array, *, max_angle: float = pi / 4, clamp: Clamp = hard) -> Array:
@@ -47,19 +47,19 @@ def sdls(J: Array, e: Array, *, max_angle: float = pi / 4, clamp: Clamp = hard) 
         raise ValueError(f"sdls needs three rows an effector, not {J.shape[-2]} rows")
     U, sigma, Vt = np.linalg.svd(J, full_matrices=False)
     kept = sigma > SMALLEST
-    sigma = np.where(kept, sigma, 1)
-    N = lengths(U).sum(axis=-2)
-    rho = lengths(J).sum(axis=-2)
+    sigma = np.maximum(sigma, SMALLEST)  # so that nothing is divided by 0
+    both = lengths(np.concatenate([U, J], axis=-1)).sum(axis=-2)
+    N, rho = both[..., : U.shape[-1]], both[..., U.shape[-1] :]
     M = np.matvec(abs(Vt), rho) / sigma
     gamma = N / np.maximum(M, N) * max_angle  # min(1, N/M), and no division by M = 0
-    alpha = np.where(kept, np.vecmat(e, U), 0)
+    alpha = np.vecmat(e, U) * kept
     phi = clamp((alpha / sigma)[..., None] * Vt, gamma)  # (..., r, n), one row a direction
     dtheta = phi.sum(axis=-2)
-    over = abs(dtheta).max(axis=-1) > max_angle
+    over = _peak(dtheta) > max_angle
     return np.where(over[..., None], clamp(dtheta, max_angle), dtheta) if over.any() else dtheta
 
 
 def lengths(A: Array) -> Array:
     """The length of each 3-vector in the columns of A (..., 3k, r): (..., k, r)."""
-    blocks = A.reshape(*A.shape[:-2], A.shape[-2] // 3, 3, A.shape[-1])
-    return np.sqrt((blocks * blocks).sum(axis=-2))
+    vectors = A.reshape(*A.shape[:-2], A.shape[-2] // 3, 3, A.shape[-1]).mT
+    return np.sqrt(np.vecdot(vectors, vectors))

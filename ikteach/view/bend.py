@@ -25,8 +25,8 @@ class BendBench(SceneBench):
         self.arm = planar_arm(2)
         self._chart()
         controls = {
-            "bend": slider("bend of the elbow [°]", 40.0, -180.0, 180.0, 1.0),
-            "way": slider("direction of the error [°]", 180.0, -180.0, 180.0, 5.0),
+            "bend": slider("bend of the elbow [°]", 40, -180, 180, 1),
+            "way": slider("direction of the error [°]", 180, -180, 180, 5),
         }
         scene = Scene(*self.arm, width=460, height=400)
         super().__init__(scene, self._bend, controls, slot=slot)
@@ -50,9 +50,10 @@ class BendBench(SceneBench):
         right.invert_yaxis()
         for axes in left, right:
             axes.grid(alpha=0.3, axis="x")
+            axes.set_axisbelow(True)
         self._canvas = Canvas(figure, [*self._sigma, *self._steps])
 
-    def _bend(self, *, bend: float, way: float) -> Shown:
+    def _bend(self, *, bend: int, way: int) -> Shown:
         tree, effectors = self.arm
         theta = np.radians([0, bend])
         frames = forward(tree, theta)
@@ -68,7 +69,7 @@ class BendBench(SceneBench):
             bar.set_width(max(length, LEAST))
         told = ", ".join(f"{name} {length:.3g} rad" for name, length in lengths.items())
         words = (
-            f"An arm bent by {bend:.0f}°, its error of {SIZE:g} m in the direction {way:.0f}°. "
+            f"An arm bent by {bend}°, its error of {SIZE:g} m in the direction {way}°. "
             f"σ₁ = {sigma[0]:.3f}, σ₂ = {sigma[1]:.3g} m/rad, √det(JJᵀ) = "
             f"{manipulability(J[:2]):.3g}, condition {conditioning(J):.3g}. "
             f"Jᵀe has the length {np.linalg.norm(J.T @ e):.3g}. Steps: {told}."

@@ -1,5 +1,6 @@
 """Where one looks from: the named sides, free turning, perspective and parallel projection."""
 
+from collections.abc import Callable
 from math import atan2, cos, degrees, hypot, radians, sin, tan
 
 import numpy as np
@@ -23,11 +24,18 @@ class Cameras:
         self.perspective: three.PerspectiveCamera = renderer.camera
         self._turning = {self.perspective: renderer.controls[0]}
         self.parallel: three.OrthographicCamera | None = None
+        self._tell: list[Callable[[], None]] = []
+        self._watch(self.perspective)
 
     @property
     def current(self) -> three.Camera:
         """The camera in use."""
         return self.renderer.camera
+
+    @property
+    def parts(self) -> list[three.ThreeWidget]:
+        """Both cameras and their controls."""
+        return [part for pair in self._turning.items() for part in pair]
 
     @property
     def orthographic(self) -> bool:
@@ -45,6 +53,7 @@ class Cameras:
                 quaternion=before.quaternion,
             )  # fmt: skip
             self._turning[self.parallel] = three.OrbitControls(controlling=self.parallel)
+            self._watch(self.parallel)
             # The scene listens to what is in it, so that a turned camera has it drawn again.
             scene = self.renderer.scene
             scene.children = [*scene.children, self.parallel]
@@ -65,6 +74,13 @@ class Cameras:
         target = np.asarray(self._turning[self.current].target)
         away = r * np.array([sin(a) * cos(e), sin(e), cos(a) * cos(e)])
         self.put(target + away, target)
+
+    def on_turn(self, tell: Callable[[], None]) -> None:
+        """Call tell() whenever the camera has been turned: with the mouse, by keys, by `turn`."""
+        self._tell.append(tell)
+
+    def _watch(self, camera: three.Camera) -> None:
+        camera.observe(lambda _: [tell() for tell in self._tell], "position")
 
     @property
     def angles(self) -> tuple[float, float]:

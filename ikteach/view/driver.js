@@ -6,7 +6,7 @@
 
 const REPORT_EVERY = 15; // frames; each report makes the kernel busy and idle, and the page says so
 
-const WAITING = 2; // frames kept for the next redraws where the network brings several at once
+const WAITING = 1; // frames kept for the next redraw: the newest
 
 async function resolve(manager, references) {
   const models = await Promise.all(

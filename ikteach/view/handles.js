@@ -3,7 +3,9 @@
 
 const STYLE = `
 .ikteach-stage:focus-visible { outline: 3px solid #56b4e9; outline-offset: -3px; }
-.ikteach-said { min-height: 1.4em; margin: 2px 4px; }
+.ikteach-stage { width: fit-content; }
+.ikteach-said { margin: 2px 4px; }
+.ikteach-said[role=status] { min-height: 1.4em; }
 .ikteach-said[role=alert]:not(:empty) { border-left: 4px solid #d55e00; padding-left: 8px; }`;
 const NEAR = { mouse: 18, pen: 22, touch: 32 }; // [pixels] from a target's middle that still hit it
 const LATE = 600; // [ms] after which a target goes where the kernel says

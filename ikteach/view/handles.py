@@ -8,6 +8,7 @@ import pythreejs as three
 import traitlets
 from ipywidgets import Widget, widget_serialization
 
+from ikteach.view.closing import close_all
 from ikteach.view.positions import Positions
 from ikteach.view.scene import Scene
 from ikteach.view.skin import SKY
@@ -71,8 +72,8 @@ class Handles(anywidget.AnyWidget):
 
     def close(self) -> None:
         """Free what the page and the kernel hold of it."""
-        for widget in (self.halo.geometry, self.halo.material, self.halo):
-            widget.close()
+        if self.comm:
+            close_all(self.halo, self.layout)
         super().close()
 
     def _hear(self, _: Any, content: dict[str, Any], __: Any) -> None:

@@ -6,12 +6,14 @@ import numpy as np
 import pythreejs as three
 
 from ikteach.arrays import Array
-from ikteach.body.rotation import sticks, transforms
+from ikteach.body.rotation import quaternion_from_y, sticks, transforms
+from ikteach.view import solids
 from ikteach.view.skin import BLUE, EFFECTOR_COLOURS, GREEN, ORANGE, PURPLE, RED, SKY
-from ikteach.view.solids import HIDDEN, arrow, label, mark_shape, node, rod
+from ikteach.view.solids import HIDDEN, mark_shape
 from ikteach.view.stage import LAYERS, SHOWN_AT, Now, Stage
 from ikteach.view.trails import MARKS, PRINTS, Prints, Trail, feet
 
+AXIS_COLOURS = (RED, GREEN, BLUE)
 Joints = list[list[three.Group]]  # the groups of the joints, a list a figure
 
 
@@ -51,14 +53,19 @@ class WorldAxes(Layer):
     """x, y and z through the origin, each with its letter."""
 
     def build(self, joints: Joints) -> None:
-        """Three half axes for each figure."""
+        """Three half axes where each figure stands."""
         unit, parts = self.stage.unit, []
-        for place in _distinct(self.stage):
-            for direction, letter, colour in zip(np.eye(3), "xyz", (RED, GREEN, BLUE), strict=True):
-                shaft = rod(direction, 0.7 * unit, 0.012 * unit, colour)
-                shaft.position = (place + 0.35 * unit * direction).tolist()
-                end = (place + 0.78 * unit * direction).tolist()
-                parts += [shaft, label(letter, colour, 0.14 * unit, end)]
+        shaft = solids.rod(0.7 * unit, 0.012 * unit)
+        looks = [three.MeshBasicMaterial(color=colour) for colour in AXIS_COLOURS]
+        for place in self.stage.places[:1] if self.stage.overlaid else self.stage.places:
+            for way, letter, look in zip(np.eye(3), "xyz", looks, strict=True):
+                middle, end = place + 0.35 * unit * way, place + 0.78 * unit * way
+                parts += [
+                    three.Mesh(
+                        shaft, look, position=middle.tolist(), quaternion=quaternion_from_y(way)
+                    ),
+                    solids.label(letter, look.color, 0.14 * unit, end.tolist()),
+                ]
         self.hold(*parts)
 
 
@@ -67,10 +74,12 @@ class JointAxes(Layer):
 
     def build(self, joints: Joints) -> None:
         """A rod for each joint; an axis is the same in its joint's own frame, at any angle."""
-        unit = self.stage.unit
+        unit, looks = self.stage.unit, solids.paints()
+        shaft = solids.rod(0.32 * unit, 0.009 * unit)
+        ways = [quaternion_from_y(axis) for axis in self.stage.tree.axes]
         for figure in joints:
-            for j, (group, axis) in enumerate(zip(figure, self.stage.tree.axes, strict=True)):
-                thing = rod(axis, 0.32 * unit, 0.009 * unit, joint_colour(j))
+            for j, (group, way) in enumerate(zip(figure, ways, strict=True)):
+                thing = three.Mesh(shaft, looks[j % len(looks)], quaternion=way)
                 group.children = [*group.children, thing]
                 self.things.append(thing)
 
@@ -89,7 +98,7 @@ class Trails(Layer):
             shapes.append((shape, three.MeshBasicMaterial(color=effector_colour(i))))
         for _ in range(len(stage)):
             for shape in shapes:
-                self.nodes += [node([three.Mesh(*shape)]) for _ in range(MARKS)]
+                self.nodes += [solids.moved(*shape) for _ in range(MARKS)]
         self.hold(*self.nodes)
 
     def place(self, now: Now) -> Array:
@@ -107,7 +116,7 @@ class Footprints(Layer):
 
     def build(self, joints: Joints) -> None:
         """A ring of prints for each foot of each figure."""
-        stage, unit = self.stage, self.stage.unit
+        stage = self.stage
         self._feet = feet(stage.effectors)
         self._prints = Prints((len(stage), len(self._feet)), PRINTS)
         for _ in range(len(stage)):
@@ -116,15 +125,15 @@ class Footprints(Layer):
                 look = three.MeshBasicMaterial(
                     color=effector_colour(i), transparent=True, opacity=0.55
                 )
-                size = (0.045 * unit, 0.004 * unit, 0.11 * unit)
-                self.nodes += [node([three.Mesh(shape, look, scale=size)]) for _ in range(PRINTS)]
+                self.nodes += [solids.moved(shape, look) for _ in range(PRINTS)]
         self.hold(*self.nodes)
 
     def place(self, now: Now) -> Array:
         """The prints, on the floor."""
         marks = self._prints.pass_through(now.effectors[:, self._feet], now.advance)
         marks[..., 1] = np.where(np.isnan(marks[..., 1]), np.nan, now.floor + 0.006)
-        return _at(marks + self.stage.places[:, None, None])
+        sole = self.stage.unit * np.array([0.045, 0.004, 0.11])
+        return _at(marks + self.stage.places[:, None, None], sole)
 
     def clear(self) -> None:
         """Forget the prints."""
@@ -136,10 +145,13 @@ class Columns(Layer):
 
     def build(self, joints: Joints) -> None:
         """An arrow for each joint of each figure, in the colour of the joint's axis."""
+        shape, looks = (
+            solids.arrow(0.013 * self.stage.unit),
+            solids.paints(three.MeshLambertMaterial),
+        )
         for _ in range(len(self.stage)):
             self.nodes += [
-                node(arrow(0.013 * self.stage.unit, joint_colour(j)))
-                for j in range(len(self.stage.tree))
+                solids.moved(shape, looks[j % len(looks)]) for j in range(len(self.stage.tree))
             ]
         self.hold(*self.nodes)
 
@@ -160,11 +172,12 @@ class Ellipsoids(Layer):
 
     def build(self, joints: Joints) -> None:
         """A ball of radius 1 for each figure, to be stretched."""
-        ball = three.SphereBufferGeometry(1, 28, 20)
+        ball, shaft = three.SphereBufferGeometry(1, 28, 20), solids.rod(2.0, 0.012)
+        line = three.MeshBasicMaterial(color=PURPLE)
         look = three.MeshLambertMaterial(color=SKY, transparent=True, opacity=0.4, depthWrite=False)
         for _ in range(len(self.stage)):
-            axes = [rod(way, 2.0, 0.012, PURPLE) for way in np.eye(3)]
-            self.nodes.append(node([*axes, three.Mesh(ball, look)]))
+            axes = [three.Mesh(shaft, line, quaternion=quaternion_from_y(w)) for w in np.eye(3)]
+            self.nodes.append(solids.node([*axes, three.Mesh(ball, look)]))
         self.hold(*self.nodes)
 
     def place(self, now: Now) -> Array:
@@ -193,7 +206,7 @@ class Reach(Layer):
                 for colour, opacity in ((PURPLE, 0.16), (ORANGE, 0.5))
             ]
         for _ in range(len(self.stage) * len(self.stage.effectors)):
-            self.nodes += [node([three.Mesh(round_as, look)]) for look in looks]
+            self.nodes += [solids.moved(round_as, look) for look in looks]
         self.hold(*self.nodes)
 
     def place(self, now: Now) -> Array:
@@ -222,18 +235,8 @@ def effector_colour(i: int) -> str:
     return EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)]
 
 
-def joint_colour(j: int) -> str:
-    """The colour of joint j's axis and of its column of J."""
-    return EFFECTOR_COLOURS[j % len(EFFECTOR_COLOURS)]
-
-
-def _distinct(stage: Stage) -> Array:
-    """The places where figures stand, each once."""
-    return stage.places[:1] if stage.overlaid else stage.places
-
-
-def _at(points: Array) -> Array:
-    """Upright matrices (points, 3, 4) at these points; hidden where they are NaN."""
+def _at(points: Array, size: Array | float = 1.0) -> Array:
+    """Upright matrices (points, 3, 4) at these points, so large; hidden where they are NaN."""
     flat = points.reshape(-1, 3)
-    upright = transforms(np.broadcast_to(np.eye(3), (len(flat), 3, 3)), flat)
+    upright = transforms(np.broadcast_to(np.eye(3) * size, (len(flat), 3, 3)), flat)
     return np.where(np.isnan(flat[:, :1, None]), HIDDEN, upright)

@@ -38,6 +38,7 @@ class SceneBench(Bench):
             list(panel if panel is not None else controls.values()),
             layout=widgets.Layout(flex="1 1 380px", min_width="340px"),
         )
+        scene.widget.layout.width = f"{scene.renderer.width}px"  # so that the panel has its place
         beside = widgets.HBox([scene.widget, column], layout=widgets.Layout(flex_flow="row wrap"))
         chart = [self._picture] if self._picture.png else []
         self.children = [beside, self._alert, *chart, self._below]
@@ -141,11 +142,9 @@ class ColumnPoser(Poser):
     def _more(self) -> dict[str, Any]:
         names = list(self.figure.effectors.names)
         pick = widgets.Dropdown(options=names, description="effector", style=WIDE, value=names[-1])
-        return {
-            "effector": pick,
-            "way": choice("columns by", list(WAYS)),
-            "h": log_slider("h of the differences [rad]", 1e-3, -6, 0.5),
-        }
+        h = log_slider("h of the differences [rad]", 1e-3, -6.0, 0.5)
+        h.readout_format = ".0e"
+        return {"effector": pick, "way": choice("columns by", list(WAYS)), "h": h}
 
     def _pose(self, **values: Any) -> Shown:
         tree, effectors = self.figure

@@ -17,7 +17,9 @@ from ikteach.body.rotation import sticks, transforms
 from ikteach.names import unknown
 from ikteach.view import solids
 from ikteach.view.cameras import Cameras
+from ikteach.view.closing import close_all
 from ikteach.view.driver import Driver, rows
+from ikteach.view.flesh import mesh
 from ikteach.view.overlays import MAKERS, Layer, effector_colour
 from ikteach.view.picture import Still
 from ikteach.view.skin import DARK, EFFECTOR_COLOURS, LIGHT, SHIRT, Part, skin_of
@@ -121,7 +123,7 @@ class Scene:
             self._dark = on
             self._floor.children = [solids.grid(self.stage.unit, on)]
             self.scene.background = DARK if on else LIGHT
-            before.close()
+            close_all(before)
 
     def show(
         self, theta: Array, targets: Array, *, floor: float | None = None, advance: float = 0.0,
@@ -181,11 +183,8 @@ class Scene:
             picture.close()
 
     def close(self) -> None:
-        """Free what the page and the kernel hold of this scene."""
-        self.driver.close()
-        for widget in _below(self.renderer):
-            widget.close()
-        self.widget.close()
+        """Free what the page and the kernel hold of this scene, and of what is mounted in it."""
+        close_all(self.widget, *self.cameras.parts)
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
         """The live widget, and beside it a still for places without a kernel."""
@@ -211,38 +210,24 @@ class Scene:
 
     def _dress(self, f: int) -> None:
         """Put flesh, or rods, on the joints of figure f, and its name over its head."""
-        stage = self.stage
+        stage, thick = self.stage, 0.03 * self.stage.unit
         holders: dict[str | None, three.Group] = dict(
             zip(self.tree.names, self._joints[f], strict=True)
         )
         holders[None] = self._grounds[f]
-        flesh: dict[str | None, list[three.Object3D]] = {joint: [] for joint in holders}
+        parts = [self._coloured(part, f) for part in skin_of(self.tree, self.effectors, thick)]
         opacity = 0.5 if stage.overlaid and f > 0 else 1.0
-        for part in skin_of(self.tree, self.effectors, 0.03 * stage.unit):
-            flesh[part.joint] += solids.solid(self._coloured(part, f), opacity)
+        for joint in dict.fromkeys(part.joint for part in parts):
+            here = [part for part in parts if part.joint == joint]
+            holders[joint].children = [mesh(here, opacity)]
         if stage.names[f]:
-            words, at = stage.names[f], stage.name_at(f)
-            flesh[None].append(solids.label(words, self._colour(f), 0.13 * stage.unit, at))
-        for joint, parts in flesh.items():
-            holders[joint].children = parts
+            words = solids.label(
+                stage.names[f], self._colour(f), 0.13 * stage.unit, stage.name_at(f)
+            )
+            holders[None].children = [*holders[None].children, words]
 
     def _colour(self, f: int) -> str:
         return SHIRT if len(self.stage) == 1 else EFFECTOR_COLOURS[f % len(EFFECTOR_COLOURS)]
 
     def _coloured(self, part: Part, f: int) -> Part:
         return part._replace(colour=self._colour(f)) if part.colour == SHIRT else part
-
-
-def _below(widget: widgets.Widget) -> list[widgets.Widget]:
-    """The widget and all that it holds, each once."""
-    found: dict[str, widgets.Widget] = {}
-    waiting = [widget]
-    while waiting:
-        one = waiting.pop()
-        if not isinstance(one, widgets.Widget) or one.model_id in found:
-            continue
-        found[one.model_id] = one
-        for name in one.keys:
-            value = getattr(one, name, None)
-            waiting += value if isinstance(value, list | tuple) else [value]
-    return list(found.values())

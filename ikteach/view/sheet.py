@@ -5,6 +5,7 @@ from math import radians, tan
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
@@ -55,12 +56,15 @@ class Sheet:
 
     def _limb(self, part: Limb, R: Array, p: Array, opacity: float) -> None:
         ends = p + np.array([part.start, part.end], dtype=float) @ R.T
-        steps = np.linspace(0, 1, 9)[:, None]  # short pieces make it thinner towards the end
-        points = ends[0] * (1 - steps) + ends[1] * steps
-        depth = float(self._see(points.mean(axis=0))[2])
-        for a, b, t in zip(points[:-1], points[1:], steps[:-1, 0], strict=True):
-            radius = part.thick * (1 - t) + part.thin * t
-            self.line(np.array([a, b]), part.colour, 2 * radius * self._points, depth, opacity)
+        t = np.linspace(0, 1, 9)[:, None]  # short pieces make it thinner towards the end
+        points = self._see(ends[0] * (1 - t) + ends[1] * t)
+        widths = 2 * self._points * (part.thick * (1 - t) + part.thin * t)[:-1, 0]
+        pieces = LineCollection(
+            list(np.stack([points[:-1, :2], points[1:, :2]], axis=1)), linewidths=widths,
+            colors=part.colour, alpha=opacity, capstyle="round",
+            zorder=float(points[:, 2].mean()),
+        )  # fmt: skip
+        self._axes.add_collection(pieces, autolim=False)
 
     def ellipsoid(
         self, centre: Array, half: Array, colour: str, opacity: float, depth: float

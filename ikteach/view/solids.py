@@ -6,9 +6,8 @@ from typing import Any
 import numpy as np
 import pythreejs as three
 
-from ikteach.arrays import Array, ArrayLike
-from ikteach.body.rotation import quaternion_from_y
-from ikteach.view.skin import GREY, Ball, Limb, Part
+from ikteach.arrays import Array
+from ikteach.view.skin import EFFECTOR_COLOURS, GREY
 from ikteach.view.stage import SQUARE
 
 # Where what is not to be seen is: far outside the picture, and tiny. Not of size 0, because
@@ -20,6 +19,11 @@ Children = Sequence[three.Object3D]
 def node(children: Children = ()) -> three.Group:
     """Something that the driver moves: its matrix is given, not made from position and so on."""
     return three.Group(children=list(children), matrixAutoUpdate=False)
+
+
+def moved(shape: three.BufferGeometry, material: three.Material) -> three.Mesh:
+    """A mesh that the driver moves, without a group around it."""
+    return three.Mesh(shape, material, matrixAutoUpdate=False)
 
 
 def lights() -> list[three.Light]:
@@ -40,31 +44,6 @@ def grid(unit: float, dark: bool) -> three.GridHelper:
     """The squares of the floor."""
     middle, lines = ("#5c6875", "#3a434d") if dark else ("#9aa5b1", "#cbd2d9")
     return three.GridHelper(6 * unit, round(6 / SQUARE), middle, lines)
-
-
-def solid(part: Part, opacity: float = 1.0) -> list[three.Mesh]:
-    """The meshes of one part of a body."""
-    material = three.MeshLambertMaterial(color=part.colour, **_see_through(opacity))
-    if isinstance(part, Ball):
-        ball = three.SphereBufferGeometry(1, 20, 14)
-        return [three.Mesh(ball, material, position=list(part.centre), scale=list(part.radii))]
-    return _limb(part, material)
-
-
-def _limb(part: Limb, material: three.Material) -> list[three.Mesh]:
-    start, end = np.asarray(part.start, dtype=float), np.asarray(part.end, dtype=float)
-    rod = three.CylinderBufferGeometry(
-        part.thin, part.thick, float(np.linalg.norm(end - start)), 16, 1, True
-    )
-    middle = three.Mesh(
-        rod, material,
-        position=((start + end) / 2).tolist(), quaternion=quaternion_from_y(end - start),
-    )  # fmt: skip
-    tips = [
-        three.Mesh(three.SphereBufferGeometry(radius, 16, 12), material, position=at.tolist())
-        for at, radius in ((start, part.thick), (end, part.thin))
-    ]
-    return [middle, *tips]
 
 
 def target(name: str, colour: str, unit: float) -> list[three.Mesh]:
@@ -88,24 +67,20 @@ def gap(unit: float) -> list[three.Mesh]:
     return [three.Mesh(shape, material, position=(0, 0.5, 0))]
 
 
-def rod(direction: ArrayLike, length: float, radius: float, colour: str) -> three.Mesh:
-    """A rod through the origin, half its length to either side."""
-    return three.Mesh(
-        three.CylinderBufferGeometry(radius, radius, length, 8),
-        three.MeshBasicMaterial(color=colour),
-        quaternion=quaternion_from_y(direction),
-    )
+def rod(length: float, radius: float) -> three.BufferGeometry:
+    """A rod along y, half its length to either side of the origin."""
+    return three.CylinderBufferGeometry(radius, radius, length, 8)
 
 
-def arrow(radius: float, colour: str) -> list[three.Mesh]:
+def arrow(radius: float) -> three.BufferGeometry:
     """An arrow one metre along y, to be stretched to its length."""
-    material = three.MeshLambertMaterial(color=colour)
-    shaft = three.CylinderBufferGeometry(radius, radius, 0.78, 8)
-    head = three.CylinderBufferGeometry(0, 2.4 * radius, 0.22, 12)
-    return [
-        three.Mesh(shaft, material, position=(0, 0.39, 0)),
-        three.Mesh(head, material, position=(0, 0.89, 0)),
-    ]
+    outline = [(0, 0), (radius, 0), (radius, 0.78), (2.4 * radius, 0.78), (0, 1)]
+    return three.LatheBufferGeometry([list(map(float, point)) for point in outline], 10)
+
+
+def paints(kind: type[three.Material] = three.MeshBasicMaterial) -> list[three.Material]:
+    """A material of each colour in `EFFECTOR_COLOURS`."""
+    return [kind(color=colour) for colour in EFFECTOR_COLOURS]
 
 
 def label(text: str, colour: str, height: float, at: Sequence[float]) -> three.Sprite:

@@ -1,6 +1,6 @@
 """The renderer without WebGL: the same figures, targets and layers as a PNG, in parallel view."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -8,6 +8,7 @@ from ikteach.arrays import Array, ArrayLike
 from ikteach.body import Effectors, Tree
 from ikteach.names import unknown
 from ikteach.view import skin
+from ikteach.view.closing import close_all
 from ikteach.view.picture import Picture
 from ikteach.view.sheet import BEFORE, BEHIND, DPI, Sheet
 from ikteach.view.skin import EFFECTOR_COLOURS
@@ -28,8 +29,9 @@ class StillScene:
     ) -> None:  # fmt: skip
         self.tree, self.effectors = tree, effectors
         self.stage = Stage(tree, effectors, names, apart)
-        self.dark = dark
-        self.widget = Picture()
+        self._dark = dark
+        self._widget: Picture | None = None
+        self._png = b""  # of what was shown last, once somebody has asked for it
         self._size = (width / DPI, height / DPI)
         self._skin = skin.skin_of(tree, effectors, 0.03 * self.stage.unit)
         self._on: set[str] = set()
@@ -40,32 +42,51 @@ class StillScene:
         self._now: Now | None = None
 
     @property
+    def dark(self) -> bool:
+        """Whether the background is dark; may be set."""
+        return self._dark
+
+    @dark.setter
+    def dark(self, on: bool) -> None:
+        self._dark = on
+        self._changed()
+
+    @property
     def layers(self) -> dict[str, bool]:
         """Which layers are drawn."""
         return {name: name in self._on for name in LAYERS}
 
     @property
+    def widget(self) -> Picture:
+        """The picture, made when it is first asked for, and drawn anew at each change from then."""
+        if self._widget is None:
+            self._widget = Picture(png=self.png, alt=self.alt)
+        return self._widget
+
+    @property
     def png(self) -> bytes:
-        """What was shown last; empty before."""
-        return bytes(self.widget.png)
+        """What was shown last; empty if nothing was."""
+        if not self._png and self._now is not None:
+            self._png = self._draw(self._now)
+        return self._png
 
     @property
     def alt(self) -> str:
-        """What it shows, in words."""
-        return str(self.widget.alt)
+        """What was shown last, in words."""
+        return "" if self._now is None else self._words(self._now)
 
     def switch(self, layer: str, on: bool = True) -> None:
         """Draw a layer, or do not; LookupError for an unknown name."""
         if layer not in LAYERS:
             raise LookupError(unknown("layer", layer, LAYERS))
         self._on = self._on | {layer} if on else self._on - {layer}
-        self._draw()
+        self._changed()
 
     def look_from(self, side: str) -> None:
         """Put the camera to one of `CAMERAS`, or to "plane": along −z."""
         side_of(side)
         self._side = side
-        self._draw()
+        self._changed()
 
     def show(
         self, theta: Array, targets: Array, *, floor: float | None = None, advance: float = 0.0,
@@ -77,7 +98,9 @@ class StillScene:
         self._now = self.stage.now(
             theta, targets, floor, advance, effector, columns, ellipsoid, reach
         )
-        self._draw()
+        self._trail.pass_through(self._now.effectors, advance)
+        self._prints.pass_through(self._now.effectors[:, feet(self.effectors)], advance)
+        self._changed()
 
     def clear(self) -> None:
         """Forget trails and footprints."""
@@ -86,23 +109,26 @@ class StillScene:
 
     def close(self) -> None:
         """Free the picture."""
-        self.widget.close()
+        if self._widget is not None:
+            close_all(self._widget)
 
     def _repr_mimebundle_(self, **kwargs: object) -> dict[str, object]:
         return {"image/png": self.png, "text/plain": self.alt}
 
-    def _draw(self) -> None:
-        if self._now is None:
-            return
-        sheet = Sheet(self._side, self._size, self.stage, self.dark)
-        self._draw_floor(sheet, self._now)
-        for f in reversed(range(len(self.stage))):
-            self._draw_figure(sheet, self._now, f)
-        self._draw_layers(sheet, self._now)
-        self.widget.png = sheet.png()
-        self.widget.alt = self._words(self._now)
+    def _changed(self) -> None:
+        self._png = b""
+        if self._widget is not None:
+            self._widget.png, self._widget.alt = self.png, self.alt
 
-    def _draw_floor(self, sheet: "Sheet", now: Now) -> None:
+    def _draw(self, now: Now) -> bytes:
+        sheet = Sheet(self._side, self._size, self.stage, self.dark)
+        self._draw_floor(sheet, now)
+        for f in reversed(range(len(self.stage))):
+            self._draw_figure(sheet, now, f)
+        self._draw_layers(sheet, now)
+        return sheet.png()
+
+    def _draw_floor(self, sheet: Sheet, now: Now) -> None:
         side = SQUARE * self.stage.unit
         marks = side * np.arange(-6, 7)
         glide = -(now.advance % side)
@@ -116,7 +142,7 @@ class StillScene:
                     ends = np.array([a, b])[:, [0, 2, 1]] - [0, 0, 0.2 * self.stage.unit]
                 sheet.line(ends, sheet.faint, 0.8, BEHIND)
 
-    def _draw_figure(self, sheet: "Sheet", now: Now, f: int) -> None:
+    def _draw_figure(self, sheet: Sheet, now: Now, f: int) -> None:
         stage, unit = self.stage, self.stage.unit
         place = stage.places[f]
         opacity = 0.45 if stage.overlaid and f > 0 else 1.0
@@ -124,61 +150,78 @@ class StillScene:
             j = None if part.joint is None else stage.tree.index(part.joint)
             R = np.eye(3) if j is None else now.orientations[f, j]
             p = place if j is None else now.positions[f, j] + place
-            sheet.part(part._replace(colour=self._colour(part, f)), R, p, opacity)
+            sheet.part(part._replace(colour=self._paint(part, f)), R, p, opacity)
         for i, name in enumerate(stage.effectors.names):
             if stage.overlaid and f > 0:
                 continue
             target, s = now.targets[f, i] + place, now.effectors[f, i] + place
-            colour = EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)]
+            colour = _colour(i)
             sheet.line(np.array([s, target]), "0.5", 1.5, BEFORE)
             sheet.mark(target, name, colour, 0.045 * unit, name if f == 0 else None)
         if stage.names[f]:
-            colour = EFFECTOR_COLOURS[f % len(EFFECTOR_COLOURS)]
+            colour = _colour(f)
             sheet.words(place + stage.name_at(f), stage.names[f], colour)
 
-    def _colour(self, part: skin.Part, f: int) -> str:
+    def _paint(self, part: skin.Part, f: int) -> str:
         several = len(self.stage) > 1 and part.colour == skin.SHIRT
-        return EFFECTOR_COLOURS[f % len(EFFECTOR_COLOURS)] if several else part.colour
+        return _colour(f) if several else part.colour
 
-    def _draw_layers(self, sheet: "Sheet", now: Now) -> None:
-        stage, unit, on = self.stage, self.stage.unit, self._on
-        places = stage.places[:, None]
-        at = (now.effectors + places)[:, now.effector]
-        trail = self._trail.pass_through(now.effectors, now.advance) + places[:, None]
-        prints = self._prints.pass_through(now.effectors[:, feet(stage.effectors)], now.advance)
-        prints[..., 1] += now.floor - prints[..., 1]
-        if "world axes" in on:
-            for place in stage.places[:1] if stage.overlaid else stage.places:
-                for way, letter, colour in zip(
-                    np.eye(3), "xyz", (skin.RED, skin.GREEN, skin.BLUE), strict=True
-                ):
-                    sheet.line(place + np.outer([0, 0.7 * unit], way), colour, 2.5, BEFORE)
-                    sheet.words(place + 0.78 * unit * way, letter, colour)
-        if "joint axes" in on:
-            axes = np.matvec(now.orientations, stage.tree.axes)
-            for f, j in np.ndindex(axes.shape[:2]):
-                ends = now.positions[f, j] + places[f] + 0.16 * unit * np.outer([-1, 1], axes[f, j])
-                sheet.line(ends, EFFECTOR_COLOURS[j % len(EFFECTOR_COLOURS)], 2, BEFORE)
-        for layer, marks in (("trails", trail), ("footprints", prints + places[:, None])):
-            for f, i in np.ndindex(marks.shape[:2]) if layer in on else ():
-                which = i if layer == "trails" else feet(stage.effectors)[i]
-                sheet.dots(marks[f, i], EFFECTOR_COLOURS[which % len(EFFECTOR_COLOURS)],
-                           3 if layer == "trails" else 9)  # fmt: skip
-        if "columns of J" in on and now.columns is not None:
-            for f, j in np.ndindex(now.columns.shape[0], now.columns.shape[2]):
-                colour = EFFECTOR_COLOURS[j % len(EFFECTOR_COLOURS)]
-                sheet.arrow(at[f], at[f] + SHOWN_AT * now.columns[f, :, j], colour)
-        if "ellipsoid" in on and now.axes is not None and now.lengths is not None:
-            for f, centre in enumerate(at):
-                half = now.axes[f] * (SHOWN_AT * now.lengths[f])
-                sheet.ellipsoid(centre, half, skin.SKY, 0.4, BEFORE)
-                for way in half.T:
-                    sheet.line(centre + np.outer([-1, 1], way), skin.PURPLE, 1.5, BEFORE)
-        if "reach" in on:
-            for place in stage.places:
-                for centre, inner, outer in now.reach:
-                    sheet.circle(centre + place, outer, skin.PURPLE, "-")
-                    sheet.circle(centre + place, inner, skin.ORANGE, "--")
+    def _draw_layers(self, sheet: Sheet, now: Now) -> None:
+        stage, trail = self.stage, self._trail.marks - [0.0, 0.0, now.advance]
+        prints = self._prints.marks - [0.0, 0.0, now.advance]
+        prints[..., 1] += now.floor - prints[..., 1]  # on the floor; where there is none, NaN
+        at = now.effectors[:, now.effector] + stage.places
+        on, which = self._on, feet(stage.effectors)
+        for f, place in enumerate(stage.places):
+            if "world axes" in on:
+                self._world_axes(sheet, place)
+            if "joint axes" in on:
+                self._joint_axes(sheet, now, f)
+            if "footprints" in on:
+                self._dots(sheet, prints[f], which, f, 14)
+            if "trails" in on:
+                self._dots(sheet, trail[f], range(len(stage.effectors)), f, 3)
+            if "columns of J" in on:
+                self._columns(sheet, now, f, at[f])
+            if "ellipsoid" in on:
+                self._ellipsoid(sheet, now, f, at[f])
+            if "reach" in on:
+                self._reach(sheet, now, place)
+
+    def _world_axes(self, sheet: Sheet, place: Array) -> None:
+        unit = self.stage.unit
+        colours = (skin.RED, skin.GREEN, skin.BLUE)
+        for way, letter, colour in zip(np.eye(3), "xyz", colours, strict=True):
+            sheet.line(place + np.outer([0, 0.7 * unit], way), colour, 2.5, BEFORE)
+            sheet.words(place + 0.78 * unit * way, letter, colour)
+
+    def _joint_axes(self, sheet: Sheet, now: Now, f: int) -> None:
+        axes = np.matvec(now.orientations[f], self.stage.tree.axes)
+        for j, (p, axis) in enumerate(zip(now.positions[f], axes, strict=True)):
+            ends = p + self.stage.places[f] + 0.16 * self.stage.unit * np.outer([-1, 1], axis)
+            sheet.line(ends, _colour(j), 2, BEFORE)
+
+    def _dots(self, sheet: Sheet, marks: Array, which: Iterable[int], f: int, size: float) -> None:
+        for i, points in zip(which, marks, strict=True):
+            sheet.dots(points + self.stage.places[f], _colour(i), size)
+
+    def _columns(self, sheet: Sheet, now: Now, f: int, at: Array) -> None:
+        if now.columns is not None:
+            for j, column in enumerate(now.columns[f].T):
+                sheet.arrow(at, at + SHOWN_AT * column, _colour(j))
+
+    def _ellipsoid(self, sheet: Sheet, now: Now, f: int, at: Array) -> None:
+        if now.axes is None or now.lengths is None:
+            return
+        half = now.axes[f] * (SHOWN_AT * now.lengths[f])
+        sheet.ellipsoid(at, half, skin.SKY, 0.4, BEFORE)
+        for way in half.T:
+            sheet.line(at + np.outer([-1, 1], way), skin.PURPLE, 1.5, BEFORE)
+
+    def _reach(self, sheet: Sheet, now: Now, place: Array) -> None:
+        for centre, inner, outer in now.reach:
+            sheet.circle(centre + place, outer, skin.PURPLE, "-")
+            sheet.circle(centre + place, inner, skin.ORANGE, "--")
 
     def _words(self, now: Now) -> str:
         far = 100 * np.linalg.norm(now.targets - now.effectors, axis=-1)
@@ -190,3 +233,7 @@ class StillScene:
         figure = "human" if self.stage.human else "figure"
         layers = "".join(f", {layer}" for layer, on in self.layers.items() if on)
         return f"A {figure} from {self._side}{layers}. From the target: {'; '.join(rows)}."
+
+
+def _colour(i: int) -> str:
+    return EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)]

@@ -51,10 +51,17 @@ function render({ model, el }) {
     });
     slider.addEventListener("change", () => { delete slider.dataset.held; });
     box.addEventListener("input", () => { box.dataset.typing = "true"; });
-    box.addEventListener("change", () => {
+    const commit = () => {
+      if (!box.dataset.typing) return;
       delete box.dataset.typing;
       const value = Number.isFinite(box.valueAsNumber) ? box.valueAsNumber : null;
       model.send({ target, axis, value, typed: true });
+    };
+    box.addEventListener("change", commit);
+    box.addEventListener("keydown", (event) => { // the notebook keeps Enter from making a change
+      if (event.key !== "Enter") return;
+      commit();
+      event.stopPropagation();
     });
     return { slider, box };
   }

@@ -85,6 +85,7 @@ class Targets(anywidget.AnyWidget):
         """Free what the page and the kernel hold of it."""
         if self.handles is not None:
             self.handles.close()
+        self.layout.close()
         super().close()
 
     def _agree(self, index: int, position: Array) -> None:

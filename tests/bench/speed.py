@@ -1,7 +1,9 @@
 """How much the body costs beside the linear algebra: python tests/bench/speed.py [rounds]
 
-Every line is a ratio of two things timed in turns, A B A B …, in one process on one BLAS thread:
-the median of the paired ratios, and the ratio of the two fastest. The human, 4 effectors.
+Every line is a ratio of two things called in turns, A B A B …, in one process on one BLAS thread:
+the median of the paired ratios, and the ratio of the two fastest. The human, 4 effectors. Turns of
+one call each put both in the same state of the machine's caches. Alone in a loop the bare line runs
+from the innermost cache, which no program that also draws a figure does; "looped" shows that.
 """
 
 import os
@@ -55,7 +57,7 @@ def damped(J, e):
 
 
 def comparisons():
-    """{what: (A, B, calls of each in a round, the most that A may cost in units of B)}."""
+    """{what: (A, B, turns in a round, the most that A may cost in units of B)}."""
     theta, targets, J, e = problem()
     many = problem(BATCH)
     identity = DAMPING**2 * np.eye(12)
@@ -90,21 +92,24 @@ def comparisons():
     }
 
 
-def measure(a, b, calls, rounds):
+def measure(a, b, turns, rounds, loop=1):
     """(median of paired ratios, ratio of minima, fastest a [s], fastest b [s])."""
     a(), b()
-    pairs = [(timeit(a, number=calls), timeit(b, number=calls)) for _ in range(rounds)]
-    fastest = [min(times) / calls for times in zip(*pairs, strict=True)]
+    pairs = [(timeit(a, number=loop), timeit(b, number=loop)) for _ in range(turns * rounds)]
+    fastest = [min(times) / loop for times in zip(*pairs, strict=True)]
     return median(x / y for x, y in pairs), fastest[0] / fastest[1], *fastest
 
 
 def main(rounds=60):
     """Print the table."""
-    print(f"{'':42}{'median':>8}{'of min':>8}{'bar':>6}{'A [µs]':>10}{'B [µs]':>10}")
-    for what, (a, b, calls, bar) in comparisons().items():
-        ratio, least, x, y = measure(a, b, calls, rounds)
+    print(f"{'':42}{'median':>8}{'of min':>8}{'bar':>6}{'A [µs]':>10}{'B [µs]':>10}{'looped':>8}")
+    for what, (a, b, turns, bar) in comparisons().items():
+        ratio, least, x, y = measure(a, b, turns, rounds)
+        looped, *_ = measure(a, b, 1, rounds, loop=turns)
         bar = f"≤ {bar}" if bar else "≥ 15"
-        print(f"{what:42}{ratio:8.2f}{least:8.2f}{bar:>6}{x * 1e6:10.1f}{y * 1e6:10.1f}")
+        print(
+            f"{what:42}{ratio:8.2f}{least:8.2f}{bar:>6}{x * 1e6:10.1f}{y * 1e6:10.1f}{looped:8.2f}"
+        )
 
 
 if __name__ == "__main__":
