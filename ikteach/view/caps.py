@@ -49,6 +49,16 @@ class CapPlayer(widgets.VBox):  # type: ignore[misc]
             control.observe(obey, "value")
         super().__init__([*self.controls.values(), self.player])
 
+    @property
+    def words(self) -> str:
+        """What is seen, for those who cannot see it."""
+        return self.player._words()
+
+    def refresh(self) -> None:
+        """Take one tick, and report."""
+        self.player.session.tick()
+        self.player._report()
+
     def close(self) -> None:
         """Stop the loop and free the widgets."""
         if CapPlayer._living is self:
