@@ -207,7 +207,8 @@ class Race(widgets.VBox):  # type: ignore[misc]
 
 def _table(to_html: Callable[..., str]) -> str:
     return (
-        "<p>On the left above: the effectors of dls. Last 10 s: distance to target in cm, mean and worst; jitter (mean ‖Δ²θ‖) in degrees; "
+        "<p>On the left above: the effectors of dls. Last 10 s: distance to target in cm, mean "
+        "and worst; jitter (mean ‖Δ²θ‖) in degrees; "
         "joints held at limits.</p>"
         + to_html(float_format="{:.2f}".format, border=0, classes="ikteach-table")
     )
