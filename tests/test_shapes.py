@@ -15,9 +15,9 @@ from ikteach import body as bodies
 from ikteach.body import forward, jacobian, locate
 from ikteach.body.jacobian import cross
 from ikteach.body.tree import Plan, skew
-from ikteach.motion import anatomy as anatomy_
 from ikteach.motion import gait, per_chain, reachable, step, track, whole
 from ikteach.motion.anatomy import Anatomy, anatomy, response
+from ikteach.motion.anatomy import Directions as AlongSigma
 from ikteach.motion.log import Log
 from ikteach.motion.mix import Mix
 from ikteach.motion.reachable import nearest
@@ -106,7 +106,7 @@ RECORDS = [  # a record, its promises by field, how to make one
     (Step, lambda g: step(TREE, g.theta, EFFECTORS, g.targets, "dls", max_step=0.1)),
     (Track, lambda g: track(TREE, EFFECTORS, g.walk, sdls, theta=g.theta)),
     (Log, lambda g: WALKED.log()),
-    (anatomy_.Directions, lambda g: anatomy_.Directions.of(ONE.J, ONE.e)),
+    (AlongSigma, lambda g: AlongSigma.of(ONE.J, ONE.e)),
     (Anatomy, lambda g: ONE),
     (Directions, lambda g: directions(g.J, g.e)),
     (Tree, lambda g: TREE),
