@@ -43,21 +43,21 @@ class CapPlayer(widgets.VBox):  # type: ignore[misc]
             "cap": slider("cap [° a step]", degrees, 0.5, 45.0, 0.5),
             "x_hand": slider("hands to the side [m]", x_hand, 0.3, 2.0, 0.05),
         }
-        self._alert = self.player._alert
+        self.status = self.player.status
         for name, control in self.controls.items():
-            obey = self.player._guarded(lambda change, name=name: self._obey(name, change["new"]))
+            obey = self.player.guarded(lambda change, name=name: self._obey(name, change["new"]))
             control.observe(obey, "value")
         super().__init__([*self.controls.values(), self.player])
 
     @property
     def words(self) -> str:
         """What is seen, for those who cannot see it."""
-        return self.player._words()
+        return self.player.words()
 
     def refresh(self) -> None:
         """Take one tick, and report."""
         self.player.session.tick()
-        self.player._report()
+        self.player.report()
 
     def close(self) -> None:
         """Stop the loop and free the widgets."""

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ikteach.body import figures
-from ikteach.course.checking import WrongError, exercise, expect
+from ikteach.course.checking import NotYetError, WrongError, exercise, expect
 from ikteach.motion import gait, track
 from ikteach.motion.mix import Mix
 from ikteach.solvers import SOLVERS
@@ -37,6 +37,8 @@ def mix(value: Any) -> None:
     _, effectors = figures.human()
     if not isinstance(value, Mapping):
         raise WrongError(f"A mix is a dictionary {{effector: method}}, not {type(value).__name__}.")
+    if ... in value.values():
+        raise NotYetError("name a method for every effector.")
     for name in effectors.names:
         expect(name in value, f"{name!r} has no method in your mix.")
     for name, method in value.items():
