@@ -16,6 +16,7 @@ sys.path += [str(HERE), str(HERE / "bench")]
 TOGETHER = ("browser", "test_notebooks", "test_opening", "test_builds", "test_tracking")
 
 
+@pytest.hookimpl(tryfirst=True)  # pytest-xdist reads the marks in the same hook
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Tell pytest-xdist which tests belong together."""
     for item in items:

@@ -106,6 +106,14 @@ class Controls:
         finally:
             self._quiet = False
 
+    def say_playing(self, on: bool) -> None:
+        """Have the button say whether it plays, and tell nobody."""
+        self._quiet = True
+        try:
+            self.playing.value = on
+        finally:
+            self._quiet = False
+
     def close(self) -> None:
         """Free the widgets."""
         buttons = self.playing, self.method, self.motion, self.reset, self.step

@@ -41,12 +41,12 @@ class GaitPlayer(Live):
 
     def play(self) -> None:
         """Let time pass."""
-        self.controls.playing.value = True
+        self.controls.say_playing(True)
         super().play()
 
     def pause(self) -> None:
         """Stop the clock; controls still act."""
-        self.controls.playing.value = False
+        self.controls.say_playing(False)
         super().pause()
 
     def close(self) -> None:
@@ -92,7 +92,7 @@ class GaitPlayer(Live):
         elif name == "reset":
             session.reset()
         elif name == "step":
-            self.playing = self.controls.playing.value = False
+            self.pause()
             session.tick()
         else:
             session.change(**{name: value})

@@ -81,6 +81,17 @@ class Race(widgets.VBox):  # type: ignore[misc]
         """What the controls say now."""
         return {name: control.value for name, control in self.controls.items()}
 
+    @property
+    def words(self) -> str:
+        """What is seen, for those who cannot see it."""
+        return self._words()
+
+    def refresh(self) -> None:
+        """Do what was asked for, take one tick, and report."""
+        self._act()
+        self.session.tick()
+        self._report()
+
     def pause(self) -> None:
         """Stop the clock; controls still act."""
         self._play.value = False
@@ -207,8 +218,7 @@ class Race(widgets.VBox):  # type: ignore[misc]
 
 def _table(to_html: Callable[..., str]) -> str:
     return (
-        "<p>On the left above: the effectors of dls. Last 10 s: distance to target in cm, mean "
-        "and worst; jitter (mean ‖Δ²θ‖) in degrees; "
-        "joints held at limits.</p>"
+        "<p>On the left above: the effectors of dls. Last 10 s: distance to target in cm, mean and "
+        "worst; jitter (mean ‖Δ²θ‖) in degrees; joints held at limits.</p>"
         + to_html(float_format="{:.2f}".format, border=0, classes="ikteach-table")
     )

@@ -175,6 +175,8 @@ def open_notebook(lab: Lab, browser: Browser) -> Iterator[Any]:
 
     def open_one(name: str) -> Notebook:
         lab.stop_kernels()
+        while pages:  # a page that is left open goes on drawing
+            pages.pop().close()
         page = browser.new_page(viewport={"width": 1440, "height": 1100})
         pages.append(page)
         return Notebook(page, lab, name)

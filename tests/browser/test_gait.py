@@ -190,7 +190,8 @@ def test_curves_and_table_are_alive_and_have_words(gait: Notebook) -> None:
     gait.page.wait_for_function(
         "document.querySelector('.ikteach-strips').ariaLabel.includes('transpose')", timeout=READY
     )
-    rows = gait.page.locator("table.ikteach-table").first.locator("tbody tr")
+    rows = gait.page.locator("table.ikteach-table tbody tr")
+    rows.nth(3).wait_for(timeout=READY)
     assert rows.count() == 4
     plot = pixels(gait.shot("07_curves", ".ikteach-strips"))
     blue, orange = (0, 114, 178), (230, 159, 0)
