@@ -155,7 +155,9 @@ def test_a_drag_moves_target_and_hand_and_not_the_camera(scene: Notebook) -> Non
     assert np.hypot(*(np.array(where(scene, HAND)) - [x - 60, y - 50])) < 3
     assert scene.kernel("list(scene.camera.position)") == eye
     # Beside a target the same drag turns the camera.
-    drag(scene, x - 200, y + 100, 40, 0)
+    corner = scene.page.locator(CANVAS).first.bounding_box()
+    assert corner
+    drag(scene, corner["x"] + 30, corner["y"] + 30, 40, 0)
     scene.page.mouse.up()
     settle(scene, f"list(scene.camera.position) != {eye}", True)
     scene.kernel("None", "scene.look_from('three-quarter')")
