@@ -16,15 +16,14 @@ from ikteach.body import forward, jacobian, locate
 from ikteach.body.jacobian import cross
 from ikteach.body.tree import Plan, skew
 from ikteach.motion import gait, per_chain, reachable, step, track, whole
-from ikteach.motion.anatomy import Anatomy, anatomy, response
-from ikteach.motion.anatomy import Directions as AlongSigma
+from ikteach.motion.anatomy import Anatomy, anatomy
 from ikteach.motion.log import Log
 from ikteach.motion.mix import Mix
 from ikteach.motion.reachable import nearest
 from ikteach.motion.session import Session
 from ikteach.motion.step import clamp_error
 from ikteach.solvers import adjugate, cramer, determinant, ellipsoid, independence, sdls
-from ikteach.solvers.response import Directions, directions, factors, filtered
+from ikteach.solvers.response import Directions, directions, factors, filtered, response
 from ikteach.solvers.sdls import hard, lengths, soft
 
 TREE, EFFECTORS = figures.human()
@@ -86,7 +85,7 @@ PROMISES = [  # function, its promise, how to run it
     (gait.Gait.advance, "(..., 3)", lambda g: gait.walking.advance(g.T)),
     (gait.Gait.mobility, "(n,)", lambda g: gait.walking.mobility(TREE)),
     (Mix.__call__, "(..., n)", lambda g: MIX(g.J, g.e)),
-    (response, "(r,)", lambda g: response("sdls", ONE.J, ONE.e)),
+    (response, "(r,)", lambda g: response(sdls, ONE.J, ONE.e)),
     (motion.growing_clamp, "(..., k)", lambda g: motion.growing_clamp(g.e, np.ones((*g.batch, 4)))),
     (EFFECTORS.__class__.mask.func, "(k, 1, n)", lambda g: EFFECTORS.mask),
 ]
@@ -106,7 +105,6 @@ RECORDS = [  # a record, its promises by field, how to make one
     (Step, lambda g: step(TREE, g.theta, EFFECTORS, g.targets, "dls", max_step=0.1)),
     (Track, lambda g: track(TREE, EFFECTORS, g.walk, sdls, theta=g.theta)),
     (Log, lambda g: WALKED.log()),
-    (AlongSigma, lambda g: AlongSigma.of(ONE.J, ONE.e)),
     (Anatomy, lambda g: ONE),
     (Directions, lambda g: directions(g.J, g.e)),
     (Tree, lambda g: TREE),

@@ -1,12 +1,25 @@
-"""Chapter 6. One singular direction at a time: what each method makes of what it is asked."""
+"""Chapter 6. One singular direction at a time: what each method makes of what it is asked.
 
+With J = U Σ Vᵀ and α_i = u_iᵀe, every one of the four methods is
+
+    Δθ = Σ_i  f_i α_i v_i
+
+and they differ in the response f_i [rad/m] alone. σ_i f_i is the share of α_i that JΔθ takes away:
+1 is all of it. It is the filter factor of the method.
+"""
+
+from collections.abc import Callable, Mapping
+from functools import partial
 from math import pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike
-from ikteach.solvers.sdls import SMALLEST, lengths
+from ikteach.solvers.dls import dls
+from ikteach.solvers.pseudoinverse import pseudoinverse
+from ikteach.solvers.sdls import SMALLEST, Clamp, bounds, hard, sdls
+from ikteach.solvers.transpose import transpose
 
 
 class Directions(NamedTuple):
@@ -37,11 +50,10 @@ def directions(J: Array, e: Array, *, max_angle: float = pi / 4) -> Directions:
     Source: thesis 4.4.5; Buss & Kim 2005.
     """
     U, sigma, Vt = np.linalg.svd(J, full_matrices=False)
-    N = lengths(U).sum(axis=-2)
-    moved = np.matvec(abs(Vt), lengths(J).sum(axis=-2))
-    M = np.divide(moved, sigma, out=np.full_like(sigma, np.inf), where=sigma > SMALLEST)
-    gamma = np.minimum(1, N / np.maximum(M, N)) * max_angle
-    return Directions(sigma, np.vecmat(e, U), U, Vt, N, M, gamma)
+    kept = sigma > SMALLEST
+    N, M, gamma = bounds(J, U, np.where(kept, sigma, 1), Vt, max_angle)
+    alpha = np.vecmat(e, U)
+    return Directions(sigma, alpha, U, Vt, N, np.where(kept, M, np.inf), np.where(kept, gamma, 0))
 
 
 def filtered(sigma: Array, damping: ArrayLike = 0.0) -> Array:
@@ -63,3 +75,63 @@ def factors(J: Array, e: Array, dtheta: Array, *, least: float = 1e-9) -> Array:
     alpha = np.vecmat(e, U)
     asked = abs(alpha) > least * np.linalg.norm(e, axis=-1, keepdims=True)
     return np.divide(np.matvec(Vt, dtheta), alpha, out=np.full_like(alpha, np.nan), where=asked)
+
+
+def response(solver: Callable[..., Array], J: Array, e: Array) -> Array:
+    """f (r,) [rad/m] of a method: what it makes of each singular direction of J for this e.
+
+    By the formula for the four methods, also with options bound by `partial`; for any other by
+    `factors` of its answer, and 0 where the error has no part.
+    """
+    plain, options = (solver.func, solver.keywords) if isinstance(solver, partial) else (solver, {})
+    if plain in RESPONSES and not getattr(solver, "args", ()):
+        return RESPONSES[plain](J, e, **options)
+    return np.nan_to_num(factors(J, e, solver(J, e), least=1e-12))
+
+
+def of_transpose(J: Array, e: Array, *, gain: float = 1.0) -> Array:
+    """f_i = gain · a σ_i, with a = Σ σ²α² / Σ σ⁴α²: the strong directions first."""
+    d = directions(J, e)
+    s = d.sigma / max(d.sigma[0], 1e-300)  # the lengths are taken in units of σ_max
+    pull = (s * d.alpha) ** 2
+    down = float(np.sum(pull * s**2))
+    a = float(np.sum(pull)) / down if down > 0 else 0.0
+    return gain * a * s / max(d.sigma[0], 1e-300)
+
+
+def of_pseudoinverse(J: Array, e: Array, *, cutoff: float = 0.01) -> Array:
+    """f_i = 1/σ_i, and 0 for the directions weaker than cutoff · σ_max."""
+    sigma = directions(J, e).sigma
+    kept = sigma > max(1e-150, sigma[0] * max(cutoff, np.finfo(float).eps))
+    return filtered(np.where(kept, sigma, 0))
+
+
+def of_dls(J: Array, e: Array, *, damping: float = 0.1) -> Array:
+    """f_i = σ_i / (σ_i² + λ²). A λ that is lost in rounding is left to `dls` to raise."""
+    return filtered(directions(J, e).sigma, damping)
+
+
+def of_sdls(J: Array, e: Array, *, max_angle: float = pi / 4, clamp: Clamp = hard) -> Array:
+    """f_i = c c_i / σ_i, where c_i shortens φ_i to its own bound γ_i, and c all of Δθ to γ_max."""
+    d = directions(J, e, max_angle=max_angle)
+    inverse = filtered(np.where(d.sigma > SMALLEST, d.sigma, 0))
+    phi = (inverse * d.alpha)[:, None] * d.Vt
+    shares = _share(clamp(phi, d.gamma), phi)
+    dtheta = shares @ phi
+    over = abs(dtheta).max() > max_angle
+    c = _share(clamp(dtheta[None], max_angle), dtheta[None])[0] if over else 1.0
+    return c * shares * inverse
+
+
+def _share(after: Array, before: Array) -> Array:
+    """By how much each row was shortened, 0..1; 1 where it is zero."""
+    size = abs(before).max(axis=-1)
+    return np.divide(abs(after).max(axis=-1), size, out=np.ones_like(size), where=size > 0)
+
+
+RESPONSES: Mapping[Any, Callable[..., Array]] = {
+    transpose: of_transpose,
+    pseudoinverse: of_pseudoinverse,
+    dls: of_dls,
+    sdls: of_sdls,
+}

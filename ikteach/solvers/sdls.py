@@ -48,15 +48,22 @@ def sdls(J: Array, e: Array, *, max_angle: float = pi / 4, clamp: Clamp = hard) 
     U, sigma, Vt = np.linalg.svd(J, full_matrices=False)
     kept = sigma > SMALLEST
     sigma = np.maximum(sigma, SMALLEST)  # so that nothing is divided by 0
-    both = lengths(np.concatenate([U, J], axis=-1)).sum(axis=-2)
-    N, rho = both[..., : U.shape[-1]], both[..., U.shape[-1] :]
-    M = np.matvec(abs(Vt), rho) / sigma
-    gamma = N / np.maximum(M, N) * max_angle  # min(1, N/M), and no division by M = 0
+    _, _, gamma = bounds(J, U, sigma, Vt, max_angle)
     alpha = np.vecmat(e, U) * kept
     phi = clamp((alpha / sigma)[..., None] * Vt, gamma)  # (..., r, n), one row a direction
     dtheta = phi.sum(axis=-2)
     over = _peak(dtheta) > max_angle
     return np.where(over[..., None], clamp(dtheta, max_angle), dtheta) if over.any() else dtheta
+
+
+def bounds(
+    J: Array, U: Array, sigma: Array, Vt: Array, max_angle: float
+) -> tuple[Array, Array, Array]:
+    """N, M [m] and γ [rad] of each singular direction of J = U diag(σ) Vᵀ with σ > 0, (..., r)."""
+    both = lengths(np.concatenate([U, J], axis=-1)).sum(axis=-2)
+    N, rho = both[..., : U.shape[-1]], both[..., U.shape[-1] :]
+    M = np.matvec(abs(Vt), rho) / sigma
+    return N, M, N / np.maximum(M, N) * max_angle  # min(1, N/M), and no division by M = 0
 
 
 def lengths(A: Array) -> Array:

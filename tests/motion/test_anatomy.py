@@ -22,9 +22,10 @@ from ikteach import (
     step,
     transpose,
 )
-from ikteach.motion.anatomy import Directions, anatomy, response
+from ikteach.motion.anatomy import anatomy
 from ikteach.motion.mix import Mix
 from ikteach.motion.step import per_chain
+from ikteach.solvers.response import directions, response
 from ikteach.solvers.sdls import soft
 
 HUMAN = figures.human()
@@ -62,7 +63,7 @@ def test_the_directions_are_those_of_j(body, seed):
 def test_responses_times_alpha_are_the_answer(body, seed, solver):
     theta, targets, J = scene(body, seed)
     e = (targets - locate(forward(body.tree, theta), body.effectors)).ravel()
-    d, answer = Directions.of(J, e), solver(J, e)
+    d, answer = directions(J, e), solver(J, e)
     if len(set(np.round(d.sigma / d.sigma[0], 6))) < len(d.sigma):
         return  # directions of equal σ are not unique, nor is what SDLS bounds
     again = (response(solver, J, e) * d.alpha) @ d.Vt
@@ -71,12 +72,12 @@ def test_responses_times_alpha_are_the_answer(body, seed, solver):
 
 def test_what_each_method_does_to_the_strong_and_the_weak():
     J, e = np.diag([2.0, 0.5, 0.001]), np.array([0.3, 0.2, 0.1])
-    assert_allclose(response("pseudoinverse", J, e), [0.5, 2, 0])
-    assert_allclose(response("dls", J, e), [2 / 4.01, 0.5 / 0.26, 0.001 / 0.010001])
+    assert_allclose(response(pseudoinverse, J, e), [0.5, 2, 0])
+    assert_allclose(response(dls, J, e), [2 / 4.01, 0.5 / 0.26, 0.001 / 0.010001])
     assert_allclose(response(partial(dls, damping=0), J, e), [0.5, 2, 1000])
-    f = response("transpose", J, e)
+    f = response(transpose, J, e)
     assert_allclose(f / f[0], [1, 0.25, 0.0005])
-    assert response("sdls", J, e)[2] * 0.1 <= np.pi / 4 + 1e-12
+    assert response(sdls, J, e)[2] * 0.1 <= np.pi / 4 + 1e-12
 
 
 def test_any_other_solver_is_answered_from_what_it_does():
