@@ -79,13 +79,14 @@ def test_in_a_room_visitors_write_no_files(monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_the_server_shows_pages_and_nothing_else_and_sends_at_once(tmp_path: Path) -> None:
     from jupyter_server.services.kernels.websocket import KernelWebsocketHandler
+    from voila.tornado.kernel_websocket_handler import VoilaKernelWebsocketHandler
 
     before = KernelWebsocketHandler.open
     served = Lecture.of(tmp_path, "workbench.ipynb", None)
     served.initialize([])
     try:
         served.init_settings()
-        assert KernelWebsocketHandler.open is not before
+        assert VoilaKernelWebsocketHandler.open is not before
     finally:
         KernelWebsocketHandler.open = before
     handlers: list[Any] = served.init_handlers()
