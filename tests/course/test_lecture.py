@@ -38,6 +38,7 @@ def test_a_page_is_words_one_figure_words_and_leads_to_all_others(page: Path) ->
     for what in ("What you see.", "What to try.", "Keys."):
         assert f"**{what}**" in words.source
     assert len(words.source.split()) < 180
+    exec(figure.source, {})
 
 
 def test_pages_are_copied_and_what_was_changed_is_kept(
