@@ -1,0 +1,128 @@
+"""JupyterHub for a class on one machine. Nothing in here needs to be changed.
+
+    pip install 'ikteach[hub]'; npm install --global configurable-http-proxy@5
+    IKTEACH_CLASS=/srv/hub/class.py jupyterhub --config /…/binder/jupyterhub/jupyterhub_config.py
+
+What only the owner of the hub can decide stands in a file of theirs, here /srv/hub/class.py. It is
+read below, may set whatever JupyterHub knows, and wins over what is set here. For instance:
+
+    c.JupyterHub.authenticator_class = "pam"           # how a student proves who they are
+    c.PAMAuthenticator.allowed_groups = {"ik-course"}  # and who may come in
+    c.Authenticator.admin_users = {"ada"}
+    c.JupyterHub.ssl_key = "/etc/ssl/private/hub.key"  # or a bind_url on 127.0.0.1, for a web
+    c.JupyterHub.ssl_cert = "/etc/ssl/certs/hub.pem"   # server on this machine that does TLS
+
+The hub does not start, and says why, where that file leaves out what a class needs, or lets in
+whom nobody knows. TEACHING.md goes through the choices.
+"""
+
+import os
+import sys
+from importlib.metadata import entry_points
+from pathlib import Path
+from urllib.parse import urlsplit
+
+from jupyterhub import auth, spawner
+from jupyterhub.authenticators.shared import SharedPasswordAuthenticator
+from traitlets import import_item
+
+c = get_config()
+HERE = Path(__file__).resolve().parent
+
+# A student's server: the course, brought up to date and never overwritten, in a folder of theirs.
+# start.py does that as the student. (nbgitpuller does it too, from a git repository, by a link:
+# then leave `cmd` as JupyterHub has it, and hand out the link.)
+c.Spawner.cmd = [sys.executable, str(HERE / "start.py")]
+c.Spawner.notebook_dir = "~/ikteach-course"
+c.Spawner.default_url = "/lab/tree/00_figure.ipynb"
+c.Spawner.args = [
+    "--ServerApp.jpserver_extensions={'ikteach.server': True}",  # small messages at once
+    "--MappingKernelManager.cull_idle_timeout=3600",  # [s] kernels that no page looks at
+    "--LabApp.news_url=None",
+    "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate",
+]
+# Matrices of a figure are small: more threads only make the students wait for one another.
+c.Spawner.environment = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+c.Spawner.start_timeout = c.Spawner.http_timeout = 180  # [s] a whole class logs in at once
+
+# Limits. A server takes about 120 MB and each open chapter about 140 MB more. These are enforced by
+# the spawner, and not by every one: systemd's and Docker's do, by control groups of the kernel;
+# JupyterHub's own LocalProcessSpawner only tells the server the numbers.
+c.JupyterHub.spawner_class = "systemd"  # needs for each student an account of the system
+c.SystemdSpawner.isolate_tmp = True
+c.Spawner.mem_limit = "1G"
+c.Spawner.cpu_limit = 1.0  # cores
+
+# Stop servers that nobody has used for an hour, and those of pages left playing after ten.
+c.JupyterHub.load_roles = [
+    {
+        "name": "idle-culler",
+        "scopes": ["list:users", "read:users:activity", "read:servers", "delete:servers"],
+        "services": ["idle-culler"],
+    }
+]
+CULLER = [sys.executable, "-m", "jupyterhub_idle_culler", "--timeout=3600", "--max-age=36000"]
+c.JupyterHub.services = [{"name": "idle-culler", "command": CULLER}]
+
+# Accounts that people make themselves (NativeAuthenticator) wait for the instructor's approval.
+c.NativeAuthenticator.minimum_password_length = 10
+c.NativeAuthenticator.check_common_password = True
+c.NativeAuthenticator.allowed_failed_logins = 5
+
+
+def refuse(sentence):
+    """End here, with what the owner has to set."""
+    sys.exit(f"The hub does not start: {sentence}")
+
+
+OWNERS = Path(os.environ.get("IKTEACH_CLASS", "class.py")).resolve()
+if not OWNERS.is_file():
+    refuse(f"there is no {OWNERS}. Name the file of your settings in IKTEACH_CLASS.")
+load_subconfig(str(OWNERS))
+
+
+def chosen(kind, value):
+    """The class that an authenticator or spawner is, and what is set for it and its bases."""
+    if isinstance(value, str):
+        known = {entry.name: entry for entry in entry_points(group=f"jupyterhub.{kind}s")}
+        try:
+            value = known[value].load() if value in known else import_item(value)
+        except (ImportError, ValueError) as error:
+            refuse(f"there is no {kind} {value!r} ({error}); installed are {', '.join(known)}.")
+    settings = {}
+    for base in reversed(value.mro()):
+        settings.update(c.get(base.__name__, {}))
+    return value, settings
+
+
+hub = c.JupyterHub
+if not hub.get("authenticator_class"):
+    refuse("set c.JupyterHub.authenticator_class: how is a student to prove who they are?")
+authenticator, who = chosen("authenticator", hub.authenticator_class)
+if issubclass(authenticator, (auth.DummyAuthenticator, SharedPasswordAuthenticator)):
+    refuse(f"with {authenticator.__name__} anybody can come in as anybody.")
+if not any(value for name, value in who.items() if name.startswith("allow")):
+    refuse("nobody may come in. Set allowed_users, or another allow… of the authenticator.")
+if who.get("open_signup"):
+    refuse("with open_signup everybody who finds the address gets an account.")
+if authenticator.__name__ == "NativeAuthenticator" and who.get("allowed_users"):
+    refuse(
+        "whoever is first to sign up under a name in allowed_users gets that account. Leave it "
+        "out, set allow_all, and approve each who has signed up at /hub/authorize."
+    )
+if not who.get("admin_users") and not who.get("admin_groups"):
+    refuse("set c.Authenticator.admin_users: who looks after the class?")
+
+if issubclass(chosen("spawner", hub.spawner_class)[0], spawner.SimpleLocalProcessSpawner):
+    refuse("with SimpleLocalProcessSpawner all students share the account of the hub.")
+
+inside = urlsplit(hub.get("bind_url", "")).hostname in ("127.0.0.1", "::1", "localhost")
+if not inside and not (hub.get("ssl_key") and hub.get("ssl_cert")):
+    refuse(
+        "passwords would cross the network in the open. Set ssl_key and ssl_cert, or set bind_url "
+        "to http://127.0.0.1:8000 and put a web server with TLS before it."
+    )
+loose = ("allow_origin", "disable_check_xsrf", "allow_unauthenticated", "Access-Control-Allow")
+everything = repr([hub, c.Spawner, c.get("ServerApp")])
+for setting in filter(everything.__contains__, loose):
+    refuse(f"{setting} opens the students' servers to other people's pages; take it out.")
