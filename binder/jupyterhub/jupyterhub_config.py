@@ -88,7 +88,9 @@ def chosen(kind, value):
         try:
             value = known[value].load() if value in known else import_item(value)
         except (ImportError, ValueError) as error:
-            refuse(f"there is no {kind} {value!r} ({error}); installed are {', '.join(known)}.")
+            refuse(
+                f"there is no {kind} {value!r} ({error}); installed are {', '.join(sorted(known))}."
+            )
     settings = {}
     for base in reversed(value.mro()):
         settings.update(c.get(base.__name__, {}))

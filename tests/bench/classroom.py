@@ -18,7 +18,7 @@ import sys
 import time
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 from uuid import uuid4
 
 import psutil
@@ -38,8 +38,14 @@ CELLS = json.loads((ROOT / "notebooks" / "07_gait.ipynb").read_text())["cells"]
 (PLAYER,) = ("".join(cell["source"]) for cell in CELLS if cell["id"] == "player")
 
 
+AsyncHTTPClient.configure(None, max_clients=1000)  # a class does not queue
+
+
 class Hub:
-    """JupyterHub with the configuration for a class, in a folder of its own; see `loopback.py`."""
+    """JupyterHub with the configuration for a class, in a folder of its own; see `loopback.py`.
+
+    Use it as `async with Hub(folder, students) as hub`: it answers then, and ends afterwards.
+    """
 
     def __init__(self, folder: Path, students: int) -> None:
         if not shutil.which("configurable-http-proxy", path=SEARCH):
@@ -71,33 +77,40 @@ class Hub:
         """The end of what it says."""
         return self._log.read_text()[-3000:]
 
-    async def wait(self) -> None:
-        """Until it answers."""
-        end = time.monotonic() + PATIENCE
-        while time.monotonic() < end and self.process.poll() is None:
-            with contextlib.suppress(OSError, HTTPClientError):  # at first the proxy knows no hub
-                await AsyncHTTPClient().fetch(f"{self.url}/hub/health")
-                return
-            await asyncio.sleep(0.2)
-        raise RuntimeError(f"The hub does not answer.\n{self.log()}")
-
-    async def ask(self, path: str, token: str = "", **body: Any) -> HTTPResponse:
-        """GET, or with a body POST."""
+    async def ask(self, path: str, token: str = "", post: Any = None) -> HTTPResponse:
+        """GET, or POST something; HTTPClientError for what is refused."""
         return await AsyncHTTPClient().fetch(
             self.url + path,
-            method="POST" if body else "GET",
+            method="GET" if post is None else "POST",
             headers={"Authorization": f"token {token}"} if token else {},
-            body=json.dumps(body) if body else None,
+            body=None if post is None else json.dumps(post),
             request_timeout=PATIENCE,
         )
 
     def servers(self) -> dict[str, psutil.Process]:
         """The process of each student's server."""
-        owners = {child.environ().get("JUPYTERHUB_USER"): child for child in self.process.children()}
+        owners = {
+            child.environ().get("JUPYTERHUB_USER"): child for child in self.process.children()
+        }
         return {name: child for name, child in owners.items() if name}
+
+    async def __aenter__(self) -> Self:
+        end = time.monotonic() + PATIENCE
+        while time.monotonic() < end and self.process.poll() is None:
+            with contextlib.suppress(OSError, HTTPClientError):  # at first the proxy knows no hub
+                await AsyncHTTPClient().fetch(f"{self.url}/hub/health")
+                return self
+            await asyncio.sleep(0.2)
+        self.stop()
+        raise RuntimeError(f"The hub does not answer.\n{self.log()}")
+
+    async def __aexit__(self, *_: object) -> None:
+        self.stop()
 
     def stop(self) -> None:
         """End it, and all that it has started."""
+        if self.process.poll() is not None:
+            return
         started = self.process.children(recursive=True)
         self.process.send_signal(signal.SIGTERM)
         for process in started:
@@ -136,14 +149,13 @@ class Student:
     async def come(self) -> None:
         """Log in, start a server and a kernel, and have the figure move."""
         hub, user = self.hub, f"/hub/api/users/{self.name}"
-        proof = {"username": self.name, "password": hub.passwords[self.name]}
-        token = json.loads((await hub.ask(f"{user}/tokens", auth=proof)).body)["token"]
-        await hub.ask(f"{user}/server", token, _=None)
+        token = await self.log_in(hub.passwords[self.name])
+        await hub.ask(f"{user}/server", token, post={})
         told = (await hub.ask(f"{user}/server/progress", token)).body.decode()
         if '"ready": true' not in told:
             raise RuntimeError(f"{self.name} gets no server: {told[-500:]}\n{hub.log()}")
         kernels = f"/user/{self.name}/api/kernels"
-        kernel = json.loads((await hub.ask(kernels, token, name="python3")).body)["id"]
+        kernel = json.loads((await hub.ask(kernels, token, post={"name": "python3"})).body)["id"]
         url = f"{hub.url}{kernels}/{kernel}/channels".replace("http", "ws", 1)
         self._page = await websocket_connect(
             HTTPRequest(url, headers={"Authorization": f"token {token}"}),
@@ -159,9 +171,11 @@ class Student:
         self._tell(hello=True)
         await asyncio.wait_for(self.moving.wait(), PATIENCE)
 
-    def leave(self) -> None:
-        """Close the page."""
-        self._page.close()
+    async def log_in(self, password: str) -> str:
+        """A token of one's own, for a password."""
+        proof = {"auth": {"username": self.name, "password": password}}
+        answer = await self.hub.ask(f"/hub/api/users/{self.name}/tokens", post=proof)
+        return str(json.loads(answer.body)["token"])
 
     def _tell(self, **content: Any) -> None:
         """Send the driver in the kernel a message, as driver.js does."""
@@ -204,7 +218,9 @@ class Student:
         self.scene += own or content["comm_id"] in self._objects
         if not own:
             return
-        self.frames.append(Frame(pose, datetime.fromisoformat(header["date"]).timestamp(), received))
+        self.frames.append(
+            Frame(pose, datetime.fromisoformat(header["date"]).timestamp(), received)
+        )
         self.moving.set()
         if pose - self._reported >= REPORT_EVERY:
             self._reported = pose

@@ -25,7 +25,6 @@ import psutil
 sys.path.insert(0, str(Path(__file__).parent))
 from classroom import Hub, Student
 
-SETTLING = 3.0  # [s] between the last student's first frame and the measurement
 COUNTS = (1, 5, 10, 20)
 RATE, LATE = 25.0, 100.0  # the bar: frames a second for each, and the 95th percentile [ms]
 
@@ -49,11 +48,11 @@ class Seen(NamedTuple):
         return self.rate >= RATE and self.p95 < LATE and self.scene == 1
 
 
-LABELS = Seen(
+LABELS = (
     "frames a second", "delay, median [ms]", "delay, 95 % [ms]", "picture's messages a frame",
     "all messages a frame", "CPU of the server [s/s]", "CPU of the kernel [s/s]",
     "memory of the server [MB]", "memory of the kernel [MB]",
-)  # type: ignore[arg-type]  # fmt: skip
+)  # fmt: skip
 
 
 class Class(NamedTuple):
@@ -72,16 +71,18 @@ class Class(NamedTuple):
         return f"{bar}: " + (f"missed by {missed} of {len(self.seen)}" if missed else "met by each")
 
 
-async def gather(hub: Hub, students: Iterable[Student]) -> float:
-    """Have more students come, all at once; how long it takes until all figures move [s]."""
+async def gather(students: Iterable[Student]) -> float:
+    """Have students come, all at once; how long it takes until their figures move [s]."""
     began = time.monotonic()
     await asyncio.gather(*(student.come() for student in students))
     return time.monotonic() - began
 
 
-async def watch(hub: Hub, students: Sequence[Student], seconds: float) -> Class:
-    """Let them play for some seconds."""
-    await asyncio.sleep(SETTLING)
+async def watch(
+    hub: Hub, students: Sequence[Student], seconds: float, settling: float = 3.0
+) -> Class:
+    """Let them play for some seconds, after some that do not count."""
+    await asyncio.sleep(settling)
     servers = hub.servers()
     trees = [[servers[one.name], *servers[one.name].children()] for one in students]
     rest = [one for one in hub.process.children() if one not in servers.values()]
@@ -150,31 +151,20 @@ HEAD = """\
 |---|---|---|---|---|---|---|---|"""
 
 
-async def main(counts: Sequence[int], seconds: float, table: bool) -> list[Class]:
+async def main(counts: Sequence[int], seconds: float, table: bool) -> None:
     """Play with ever more students, and print what came of it."""
-    results: list[Class] = []
     students: list[Student] = []
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-        hub = Hub(Path(folder), max(counts))
-        try:
-            await hub.wait()
-            print(HEAD if table else "", end="\n" * table, flush=True)
+        async with Hub(Path(folder), max(counts)) as hub:
+            if table:
+                print(HEAD, flush=True)
             for count in counts:
                 new = [Student(hub, name) for name in list(hub.passwords)[len(students) : count]]
-                took = await gather(hub, new)
+                took = await gather(new)
                 students += new
-                results.append(await watch(hub, students, seconds))
-                if table:
-                    print(row(results[-1]), flush=True)
-                else:
-                    print(f"all figures move {took:.0f} s after the class has logged in")
-                    print(told(results[-1]))
-            print("\n" + results[-1].verdict if table else "")
-        finally:
-            for one in students:
-                one.leave()
-            hub.stop()
-    return results
+                seen = await watch(hub, students, seconds)
+                print(row(seen) if table else told(seen), flush=True)
+            print(f"\n{seen.verdict}" if table else f"From login to the last figure {took:.0f} s")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What stands in for a class's own settings when `hub.py` starts the hub: this machine, no one else.
+"""What stands in for a class's own settings when `hub.py` starts the hub on this machine alone.
 
 It is no example for a class: all servers run on the account of whoever starts the bench.
 """

@@ -1,0 +1,75 @@
+"""The hub's configuration: what it gives a class, and what it does not start with."""
+
+from pathlib import Path
+
+import pytest
+from classroom import CONFIG
+from traitlets.config import PyFileConfigLoader
+
+PAM = """
+c.JupyterHub.authenticator_class = "pam"
+c.PAMAuthenticator.allowed_groups = {"ik-course"}
+c.Authenticator.admin_users = {"ada"}
+"""
+TLS = """
+c.JupyterHub.ssl_key = "hub.key"
+c.JupyterHub.ssl_cert = "hub.pem"
+"""
+NATIVE = PAM.replace("pam", "native").replace("PAM", "Native")
+NATIVE = NATIVE.replace('allowed_groups = {"ik-course"}', "allow_all = True")
+BEHIND = 'c.JupyterHub.bind_url = "http://127.0.0.1:8000"'
+
+REFUSED = {
+    "": "authenticator_class",
+    PAM: "ssl_key",
+    PAM + TLS.replace("ssl_key", "ssl_kez"): "ssl_key",
+    PAM + BEHIND.replace("127.0.0.1", "0.0.0.0"): "ssl_key",
+    PAM.replace("pam", "dummy") + TLS: "anybody can come in as anybody",
+    PAM.replace("pam", "jupyterhub.auth.DummyAuthenticator") + TLS: "anybody",
+    PAM.replace("pam", "shared-password") + TLS: "anybody can come in as anybody",
+    PAM.replace("pam", "no.such.Thing") + TLS: "no authenticator 'no.such.Thing'",
+    PAM.replace("pam", "nothing") + TLS: "installed are .*native.*pam",
+    PAM.replace("allowed_groups", "pam_groups") + TLS: "nobody may come in",
+    PAM.replace("admin_users", "blocked_users") + TLS: "admin_users",
+    NATIVE + TLS + "c.NativeAuthenticator.open_signup = True": "open_signup",
+    NATIVE + TLS + 'c.Authenticator.allowed_users = {"bo"}': "first to sign up",
+    PAM + TLS + 'c.JupyterHub.spawner_class = "simple"': "share the account",
+    PAM + TLS + 'c.Spawner.args.append("--ServerApp.allow_origin=*")': "allow_origin",
+    PAM + TLS + "c.ServerApp.disable_check_xsrf = True": "disable_check_xsrf",
+}
+
+
+def load(settings: str, folder: Path, monkeypatch):
+    own = folder / "class.py"
+    own.write_text(settings)
+    monkeypatch.setenv("IKTEACH_CLASS", str(own))
+    return PyFileConfigLoader(str(CONFIG)).load_config()
+
+
+@pytest.mark.parametrize(("settings", "words"), REFUSED.items(), ids=range(len(REFUSED)))
+def test_it_refuses_in_a_sentence_what_is_not_for_a_class(settings, words, tmp_path, monkeypatch):
+    with pytest.raises(SystemExit, match=f"^The hub does not start: .*{words}"):
+        load(settings, tmp_path, monkeypatch)
+
+
+def test_it_asks_for_the_file_of_settings(tmp_path, monkeypatch):
+    monkeypatch.setenv("IKTEACH_CLASS", str(tmp_path / "none.py"))
+    with pytest.raises(SystemExit, match=r"there is no .*none.py"):
+        PyFileConfigLoader(str(CONFIG)).load_config()
+
+
+@pytest.mark.parametrize("settings", [PAM + TLS, PAM + BEHIND, NATIVE + TLS])
+def test_it_starts_with_what_a_class_needs(settings, tmp_path, monkeypatch):
+    c = load(settings, tmp_path, monkeypatch)
+    assert c.Spawner.mem_limit
+    assert c.Spawner.cpu_limit
+    assert c.Spawner.environment["OPENBLAS_NUM_THREADS"] == "1"
+    assert [service["name"] for service in c.JupyterHub.services] == ["idle-culler"]
+
+
+def test_what_the_owner_sets_wins_and_is_added(tmp_path, monkeypatch):
+    more = 'c.Spawner.mem_limit = "2G"\nc.Spawner.args.append("--debug")'
+    c = load(PAM + TLS + more, tmp_path, monkeypatch)
+    assert c.Spawner.mem_limit == "2G"
+    assert len(c.Spawner.args) > 1
+    assert c.Spawner.args[-1] == "--debug"
