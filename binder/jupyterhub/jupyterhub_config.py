@@ -36,7 +36,7 @@ c.Spawner.cmd = [sys.executable, str(HERE / "start.py")]
 c.Spawner.notebook_dir = "~/ikteach-course"
 c.Spawner.default_url = "/lab/tree/00_figure.ipynb"
 c.Spawner.args = [
-    "--ServerApp.jpserver_extensions={'ikteach.server': True}",  # small messages at once
+    "--ServerApp.jpserver_extensions=ikteach.server=True",  # small messages at once
     "--MappingKernelManager.cull_idle_timeout=3600",  # [s] kernels that no page looks at
     "--LabApp.news_url=None",
     "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate",
@@ -63,11 +63,6 @@ c.JupyterHub.load_roles = [
 ]
 CULLER = [sys.executable, "-m", "jupyterhub_idle_culler", "--timeout=3600", "--max-age=36000"]
 c.JupyterHub.services = [{"name": "idle-culler", "command": CULLER}]
-
-# Accounts that people make themselves (NativeAuthenticator) wait for the instructor's approval.
-c.NativeAuthenticator.minimum_password_length = 10
-c.NativeAuthenticator.check_common_password = True
-c.NativeAuthenticator.allowed_failed_logins = 5
 
 
 def refuse(sentence):
@@ -107,11 +102,6 @@ if not any(value for name, value in who.items() if name.startswith("allow")):
     refuse("nobody may come in. Set allowed_users, or another allow… of the authenticator.")
 if who.get("open_signup"):
     refuse("with open_signup everybody who finds the address gets an account.")
-if authenticator.__name__ == "NativeAuthenticator" and who.get("allowed_users"):
-    refuse(
-        "whoever is first to sign up under a name in allowed_users gets that account. Leave it "
-        "out, set allow_all, and approve each who has signed up at /hub/authorize."
-    )
 if not who.get("admin_users") and not who.get("admin_groups"):
     refuse("set c.Authenticator.admin_users: who looks after the class?")
 
