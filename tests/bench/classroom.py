@@ -158,7 +158,12 @@ class Student:
         kernel = json.loads((await hub.ask(kernels, token, post={"name": "python3"})).body)["id"]
         url = f"{hub.url}{kernels}/{kernel}/channels".replace("http", "ws", 1)
         self._page = await websocket_connect(
-            HTTPRequest(url, headers={"Authorization": f"token {token}"}),
+            HTTPRequest(
+                url,
+                headers={"Authorization": f"token {token}"},
+                connect_timeout=PATIENCE,
+                request_timeout=PATIENCE,
+            ),
             on_message_callback=self._hear,
             subprotocols=[PROTOCOL],
             max_message_size=2**27,
