@@ -1,10 +1,12 @@
 """JupyterHub for a class on one machine. Nothing in here needs to be changed.
 
-    pip install 'ikteach[hub]'; npm install --global configurable-http-proxy@5
-    IKTEACH_CLASS=/srv/hub/class.py jupyterhub --config /…/binder/jupyterhub/jupyterhub_config.py
+    pip install --editable '/srv/ikteach[hub]'; npm install --global configurable-http-proxy@5
+    cd /srv/hub  # holds the hub's database and secrets: for root's eyes alone
+    jupyterhub --config /srv/ikteach/binder/jupyterhub/jupyterhub_config.py
 
-What only the owner of the hub can decide stands in a file of theirs, here /srv/hub/class.py. It is
-read below, may set whatever JupyterHub knows, and wins over what is set here. For instance:
+What only the owner of the hub can decide stands in a file of theirs, `class.py` in that folder or
+where the variable IKTEACH_CLASS says. It is read below, may set whatever JupyterHub knows, and wins
+over what is set here. For instance:
 
     c.JupyterHub.authenticator_class = "pam"           # how a student proves who they are
     c.PAMAuthenticator.allowed_groups = {"ik-course"}  # and who may come in
@@ -12,12 +14,13 @@ read below, may set whatever JupyterHub knows, and wins over what is set here. F
     c.JupyterHub.ssl_key = "/etc/ssl/private/hub.key"  # or a bind_url on 127.0.0.1, for a web
     c.JupyterHub.ssl_cert = "/etc/ssl/certs/hub.pem"   # server on this machine that does TLS
 
-The hub does not start, and says why, where that file leaves out what a class needs, or lets in
-whom nobody knows. TEACHING.md goes through the choices.
+The hub does not start, and says why, where that file leaves out what a class needs, or would let in
+people whom nobody knows.
 """
 
 import os
 import sys
+from contextlib import suppress
 from importlib.metadata import entry_points
 from pathlib import Path
 from urllib.parse import urlsplit
@@ -77,15 +80,13 @@ load_subconfig(str(OWNERS))
 
 
 def chosen(kind, value):
-    """The class that an authenticator or spawner is, and what is set for it and its bases."""
+    """The class that an authenticator or a spawner is, and what is set for it and its bases."""
+    known = {entry.name: entry for entry in entry_points(group=f"jupyterhub.{kind}s")}
     if isinstance(value, str):
-        known = {entry.name: entry for entry in entry_points(group=f"jupyterhub.{kind}s")}
-        try:
+        with suppress(ImportError, ValueError):  # then it stays a word
             value = known[value].load() if value in known else import_item(value)
-        except (ImportError, ValueError) as error:
-            refuse(
-                f"there is no {kind} {value!r} ({error}); installed are {', '.join(sorted(known))}."
-            )
+    if not isinstance(value, type):
+        refuse(f"there is no {kind} {value!r}; installed are {', '.join(sorted(known))}.")
     settings = {}
     for base in reversed(value.mro()):
         settings.update(c.get(base.__name__, {}))
@@ -96,17 +97,23 @@ hub = c.JupyterHub
 if not hub.get("authenticator_class"):
     refuse("set c.JupyterHub.authenticator_class: how is a student to prove who they are?")
 authenticator, who = chosen("authenticator", hub.authenticator_class)
+name = authenticator.__name__
 if issubclass(authenticator, (auth.DummyAuthenticator, SharedPasswordAuthenticator)):
-    refuse(f"with {authenticator.__name__} anybody can come in as anybody.")
-if not any(value for name, value in who.items() if name.startswith("allow")):
-    refuse("nobody may come in. Set allowed_users, or another allow… of the authenticator.")
-if who.get("open_signup"):
-    refuse("with open_signup everybody who finds the address gets an account.")
+    refuse(f"with {name} anybody can come in as anybody.")
+if not any(value for key, value in who.items() if key.startswith("allow")):
+    refuse(f"nobody may come in. Set allowed_users, or another allow… of {name}.")
+public = any(provider in name for provider in ("Bitbucket", "GitHub", "Globus", "Google"))
+if who.get("open_signup") or (public and who.get("allow_all") and not who.get("hosted_domain")):
+    refuse(f"anybody in the world could come in. Have {name} allow your students alone.")
 if not who.get("admin_users") and not who.get("admin_groups"):
     refuse("set c.Authenticator.admin_users: who looks after the class?")
 
-if issubclass(chosen("spawner", hub.spawner_class)[0], spawner.SimpleLocalProcessSpawner):
+runs, how = chosen("spawner", hub.spawner_class)
+if issubclass(runs, spawner.SimpleLocalProcessSpawner):
     refuse("with SimpleLocalProcessSpawner all students share the account of the hub.")
+for setting in ("allow_origin", "disable_check_xsrf", "Access-Control-Allow-Origin"):
+    if setting in repr([how, hub, c.get("ServerApp")]):
+        refuse(f"{setting} opens the students' servers to other people's pages. Take it out.")
 
 inside = urlsplit(hub.get("bind_url", "")).hostname in ("127.0.0.1", "::1", "localhost")
 if not inside and not (hub.get("ssl_key") and hub.get("ssl_cert")):
@@ -114,7 +121,3 @@ if not inside and not (hub.get("ssl_key") and hub.get("ssl_cert")):
         "passwords would cross the network in the open. Set ssl_key and ssl_cert, or set bind_url "
         "to http://127.0.0.1:8000 and put a web server with TLS before it."
     )
-loose = ("allow_origin", "disable_check_xsrf", "allow_unauthenticated", "Access-Control-Allow")
-everything = repr([hub, c.Spawner, c.get("ServerApp")])
-for setting in filter(everything.__contains__, loose):
-    refuse(f"{setting} opens the students' servers to other people's pages; take it out.")

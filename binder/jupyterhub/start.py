@@ -15,5 +15,4 @@ try:
     print(*told(deliver(course.notebooks, FOLDER), FOLDER), sep="\n", flush=True)
 except OSError as error:  # a full disk, for instance: what the student has can still be opened
     print(f"The course could not be brought up to date: {error}", file=sys.stderr, flush=True)
-    FOLDER.mkdir(exist_ok=True)
 main()

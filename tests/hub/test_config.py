@@ -15,6 +15,13 @@ TLS = """
 c.JupyterHub.ssl_key = "hub.key"
 c.JupyterHub.ssl_cert = "hub.pem"
 """
+GITHUB = """
+from jupyterhub.auth import Authenticator
+class GitHubOAuthenticator(Authenticator): ...
+c.JupyterHub.authenticator_class = GitHubOAuthenticator
+c.Authenticator.allow_all = True
+c.Authenticator.admin_users = {"ada"}
+"""
 BEHIND = 'c.JupyterHub.bind_url = "http://127.0.0.1:8000"'
 
 REFUSED = {
@@ -29,9 +36,12 @@ REFUSED = {
     PAM.replace("pam", "nothing") + TLS: "installed are .*pam",
     PAM.replace("allowed_groups", "pam_groups") + TLS: "nobody may come in",
     PAM.replace("admin_users", "blocked_users") + TLS: "admin_users",
-    PAM + TLS + "c.PAMAuthenticator.open_signup = True": "open_signup",
+    PAM + TLS + "c.PAMAuthenticator.open_signup = True": "anybody in the world",
+    GITHUB + TLS: "anybody in the world",
+    PAM.replace("pam", "os.path") + TLS: "no authenticator",
     PAM + TLS + 'c.JupyterHub.spawner_class = "simple"': "share the account",
     PAM + TLS + 'c.Spawner.args.append("--ServerApp.allow_origin=*")': "allow_origin",
+    PAM + TLS + 'c.SystemdSpawner.args = ["--ServerApp.allow_origin=*"]': "allow_origin",
     PAM + TLS + "c.ServerApp.disable_check_xsrf = True": "disable_check_xsrf",
 }
 
@@ -55,7 +65,9 @@ def test_it_asks_for_the_file_of_settings(tmp_path, monkeypatch):
         PyFileConfigLoader(str(CONFIG)).load_config()
 
 
-@pytest.mark.parametrize("settings", [PAM + TLS, PAM + BEHIND])
+@pytest.mark.parametrize(
+    "settings", [PAM + TLS, PAM + BEHIND, GITHUB.replace("all = True", "ed_users = {'bo'}") + TLS]
+)
 def test_it_starts_with_what_a_class_needs(settings, tmp_path, monkeypatch):
     c = load(settings, tmp_path, monkeypatch)
     assert c.Spawner.mem_limit
