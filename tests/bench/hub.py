@@ -12,6 +12,7 @@ Trust it on a machine that does nothing else.
 
 import argparse
 import asyncio
+import signal
 import statistics
 import sys
 import tempfile
@@ -173,5 +174,6 @@ if __name__ == "__main__":
     parser.add_argument("--seconds", type=float, default=60)
     parser.add_argument("--table", action="store_true", help=f"for {COUNTS} students, in markdown")
     given = parser.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("ended"))  # and the hub with it
     counts = COUNTS if given.table else (given.students,)
     asyncio.run(main(counts, given.seconds, given.table))
