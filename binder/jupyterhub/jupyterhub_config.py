@@ -33,8 +33,8 @@ c = get_config()
 HERE = Path(__file__).resolve().parent
 
 # A student's server: the course, brought up to date and never overwritten, in a folder of theirs.
-# start.py does that as the student. (nbgitpuller does it too, from a git repository, by a link:
-# then leave `cmd` as JupyterHub has it, and hand out the link.)
+# start.py does that as the student. (nbgitpuller does it too, from a git repository and by a link:
+# then set cmd = ["jupyterhub-singleuser"], notebook_dir = "" and default_url = "/lab" in yours.)
 c.Spawner.cmd = [sys.executable, str(HERE / "start.py")]
 c.Spawner.notebook_dir = "~/ikteach-course"
 c.Spawner.default_url = "/lab/tree/00_figure.ipynb"
@@ -48,9 +48,9 @@ c.Spawner.args = [
 c.Spawner.environment = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 c.Spawner.start_timeout = c.Spawner.http_timeout = 180  # [s] a whole class logs in at once
 
-# Limits. A server takes about 120 MB and each open chapter about 140 MB more. These are enforced by
-# the spawner, and not by every one: systemd's and Docker's do, by control groups of the kernel;
-# JupyterHub's own LocalProcessSpawner only tells the server the numbers.
+# Limits. A server takes about 110 MB, and each open chapter about as much again. It is the spawner
+# that enforces them, and not every one does: systemd's and Docker's do, by control groups of the
+# kernel; JupyterHub's own LocalProcessSpawner only tells the server the numbers.
 c.JupyterHub.spawner_class = "systemd"  # needs for each student an account of the system
 c.SystemdSpawner.isolate_tmp = True
 c.Spawner.mem_limit = "1G"
