@@ -1,5 +1,6 @@
 """The hub's configuration: what it gives a class, and what it does not start with."""
 
+import runpy
 from pathlib import Path
 
 import pytest
@@ -89,3 +90,13 @@ def test_systemd_can_fill_in_names(tmp_path, monkeypatch):
     c = load(PAM + TLS, tmp_path, monkeypatch)
     for argument in [*c.Spawner.cmd, *c.Spawner.args]:
         assert argument.format(USERNAME="bo", USERID=1) == argument
+
+
+def test_a_server_starts_where_the_course_cannot_be_written(tmp_path, monkeypatch, capsys):
+    (tmp_path / "ikteach-course").write_text("a file in its place")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    started = []
+    monkeypatch.setattr("jupyterhub.singleuser.main", lambda: started.append(True))
+    runpy.run_path(str(CONFIG.with_name("start.py")))
+    assert started
+    assert "could not be brought up to date: " in capsys.readouterr().err
