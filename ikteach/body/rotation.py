@@ -3,6 +3,7 @@
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike
+from ikteach.body.jacobian import YZXY, cross
 
 
 def transforms(orientations: Array, positions: Array) -> Array:
@@ -18,10 +19,12 @@ def sticks(start: Array, end: Array) -> Array:
     along = end - start
     length = np.linalg.norm(along, axis=-1, keepdims=True)
     y = np.divide(along, length, out=np.zeros_like(along), where=length > 0)
-    sideways = np.where(abs(y[..., :1]) < 0.9, [1.0, 0, 0], [0, 0, 1.0])
-    x = np.cross(y, sideways)
+    a, b, c = y[..., 0], y[..., 1], y[..., 2]
+    lying = abs(a) >= 0.9  # then x = y × e_z, else y × e_x
+    x = np.stack([np.where(lying, b, 0), np.where(lying, -a, c), np.where(lying, 0, -b)], axis=-1)
     x /= np.maximum(np.linalg.norm(x, axis=-1, keepdims=True), 1e-12)
-    return transforms(np.stack([x, along, np.cross(x, y)], axis=-1), start)
+    z = cross(x[..., YZXY, None], y[..., YZXY, None])[..., 0]
+    return transforms(np.stack([x, along, z], axis=-1), start)
 
 
 def quaternion_from_y(direction: ArrayLike) -> tuple[float, float, float, float]:

@@ -1,11 +1,11 @@
-"""A method for each effector: the feet by one, the hands by another."""
+"""Several methods as one solver: one for each effector, or one for each pose of a batch."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from ikteach.arrays import Array, frozen
+from ikteach.arrays import Array, finite, frozen
 from ikteach.body import Effectors
 from ikteach.motion.step import solver_of
 from ikteach.names import unknown
@@ -54,3 +54,30 @@ class Mix:
     def __repr__(self) -> str:
         each = ", ".join(f"{name}: {name_of(solver)}" for name, solver in self.methods.items())
         return f"Mix({each})"
+
+
+class Each:
+    """A solver for a batch of poses: pose i of J (p, m, n) and e (p, m) by the i-th method.
+
+    It serves for one `step`. Where that asks again because of limits, only the poses whose J is
+    another than before are solved anew.
+    """
+
+    def __init__(self, solvers: Iterable[Solver | str]) -> None:
+        self.solvers = [solver_of(solver) for solver in solvers]
+        self._J: Array | None = None
+
+    def __call__(self, J: Array, e: Array) -> Array:
+        """Δθ (p, n); FloatingPointError names the method whose answer is not finite."""
+        if self._J is None:
+            self._dtheta, asked = np.empty((len(J), J.shape[-1])), np.ones(len(J), dtype=bool)
+        else:
+            asked = (J != self._J).any(axis=(-2, -1))
+        for i in np.flatnonzero(asked):
+            dtheta = self.solvers[i](J[i], e[i])
+            if not finite(dtheta):
+                name = name_of(self.solvers[i])
+                raise FloatingPointError(f"{name} gave a step that is not finite")
+            self._dtheta[i] = dtheta
+        self._J = J
+        return self._dtheta.copy()

@@ -19,7 +19,7 @@ from ikteach.body import forward, locate
 from ikteach.body.figures import Figure, human
 from ikteach.motion.gait import Gait, walking
 from ikteach.motion.log import Event, Log, Moment, Tick
-from ikteach.motion.mix import Mix
+from ikteach.motion.mix import Each, Mix
 from ikteach.motion.step import checked, numbers, solver_of, step
 from ikteach.motion.track import Track
 from ikteach.names import unknown
@@ -212,18 +212,18 @@ class Session:
         return self.time + elapsed, phase, self.advance + gone, self.gait.at(phase)
 
     def _follow(self) -> None:
-        free = self.gait.mobility(self.tree)
-        done = {}
-        for name, solver in self.methods.items():
-            tick = step(
-                self.tree, self.theta[name], self.effectors, self.targets, solver,
-                mobility=free, **self.options_of(name),
-            )  # fmt: skip
-            s = locate(forward(self.tree, tick.theta), self.effectors)
-            error = np.linalg.norm(self.targets - s, axis=-1)
-            done[name] = Tick(tick.theta, error, bool(tick.capped), tick.held)
-        for name, tick_done in done.items():  # only now: a solver that fails changes nothing
-            self.theta[name] = tick_done.theta
+        poses = np.array([self.theta[name] for name in self.methods])
+        options = self.options | {"max_step": self._max_steps()}
+        to = step(
+            self.tree, poses, self.effectors, self.targets, Each(self.methods.values()),
+            mobility=self.gait.mobility(self.tree), **options,
+        )  # fmt: skip
+        error = self._distances(to.theta)
+        done = {
+            name: Tick(to.theta[i], error[i], bool(to.capped[i]), to.held[i])
+            for i, name in enumerate(self.methods)
+        }
+        self.theta.update({name: tick.theta for name, tick in done.items()})
         self.dropped += len(self.record) == self.record.maxlen
         self.record.append(
             Moment(
@@ -239,10 +239,20 @@ class Session:
         own = {"max_step": self.caps[method]} if method in self.caps else {}
         return {**self.options, **own}
 
+    def _max_steps(self) -> Array | None:
+        """The cap of each method, inf where it has none; None if no method has one."""
+        caps = [self.options_of(name).get("max_step") for name in self.methods]
+        if all(cap is None for cap in caps):
+            return None
+        return np.array([np.inf if cap is None else cap for cap in caps])
+
     @property
     def error(self) -> Array:
         """Distance of each effector of the shown method to its target, (k,) [m]."""
-        s = locate(forward(self.tree, self.theta[self.method]), self.effectors)
+        return self._distances(self.theta[self.method])
+
+    def _distances(self, theta: Array) -> Array:
+        s = locate(forward(self.tree, theta), self.effectors)
         return np.linalg.norm(self.targets - s, axis=-1)
 
     def jitter(self, last: int = 1) -> dict[str, Array]:

@@ -1,0 +1,18 @@
+"""Bring a student's copy of the course up to date, then be their server. Runs as the student."""
+
+import sys
+from pathlib import Path
+
+from jupyterhub.singleuser import main
+
+import ikteach
+from ikteach.course.opening import deliver, find_course, told
+
+FOLDER = Path.home() / "ikteach-course"
+
+try:
+    course = find_course(Path(ikteach.__file__).resolve().parent)
+    print(*told(deliver(course.notebooks, FOLDER), FOLDER), sep="\n", flush=True)
+except OSError as error:  # a full disk, for instance: what the student has can still be opened
+    print(f"The course could not be brought up to date: {error}", file=sys.stderr, flush=True)
+main()
