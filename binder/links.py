@@ -51,12 +51,13 @@ def on_hub(hub: str, address: str, page: str) -> str:
     """
     if urlsplit(hub).scheme != "https" or not urlsplit(hub).netloc:
         raise ValueError(f"{hub!r} is not a hub's address, such as https://hub.example.edu")
+    repository(address)
     return f"{hub.rstrip('/')}/hub/user-redirect/{pull(address, page)}"
 
 
 def pull(address: str, page: str) -> str:
-    """What nbgitpuller is asked, on the student's own server."""
-    folder = repository(address)[1].rpartition("/")[2]
+    """What nbgitpuller is asked on the student's own server; it names the folder by the address."""
+    folder = address.rstrip("/").rpartition("/")[2].removesuffix(".git")
     application, way, path = page.split("/", 2)
     query = urlencode({"repo": address, "urlpath": f"{application}/{way}/{folder}/{path}"})
     return f"git-pull?{query}"
