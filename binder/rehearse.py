@@ -81,12 +81,12 @@ class Server:
         self.log.seek(0)
         raise RuntimeError(f"the server did not start:\n{self.log.read()[-4000:]}")
 
-    def ask(self, path: str, token: bool = True) -> Any:
+    def ask(self, path: str, method: str = "GET") -> Any:
         """The answer to a request, from JSON."""
-        headers = {"Authorization": f"token {self.token}"} if token else {}
-        request = urllib.request.Request(self.base + path, headers=headers)
+        headers = {"Authorization": f"token {self.token}"}
+        request = urllib.request.Request(self.base + path, headers=headers, method=method)
         with urllib.request.urlopen(request, timeout=PATIENCE / 1000) as answer:
-            return json.load(answer)
+            return json.loads(answer.read() or "null")
 
     def memory(self) -> float:
         """[MB] of the server and its kernels; what they share is counted once."""
@@ -121,14 +121,15 @@ class Visit:
         self.page.set_default_timeout(PATIENCE)
         self.page.on("pageerror", lambda error: self.wrong.append(str(error)))
         self.page.on("console", lambda said: said.type == "error" and self.wrong.append(said.text))
-        self._base = server.base
+        self._server = server
         self.page.route("**/*", self._guard)
         self._start = time.monotonic()
         joint = "&" if "?" in link else "?"
-        self.page.goto(f"{server.base}{link}{joint}token={server.token}")
+        address = f"{server.base}{link}{joint}reset&token={server.token}"
+        self.page.goto(address, wait_until="commit")
 
     def _guard(self, route: Route) -> None:
-        inside = route.request.url.startswith((self._base, "data:", "blob:"))
+        inside = route.request.url.startswith((self._server.base, "data:", "blob:"))
         if not inside:
             self.wrong.append(f"asks for {route.request.url}")
         (route.continue_ if inside else route.abort)()
@@ -150,5 +151,7 @@ class Visit:
     def end(self) -> None:
         """Close the page; it must have had no errors and asked for nothing from elsewhere."""
         self.page.close()
+        for kernel in self._server.ask("api/kernels"):
+            self._server.ask(f"api/kernels/{kernel['id']}", "DELETE")
         if self.wrong:
             raise RuntimeError("\n".join(self.wrong))
