@@ -131,9 +131,11 @@ def lab_command(folder: Path, first: str, port: int | None, extra: list[str]) ->
 
 def lab_environment(course: Course) -> dict[str, str]:
     """The environment of JupyterLab; from a clone, its kernels find this very package."""
-    paths = [str(PACKAGE.parent)] if course.clone else []
-    paths += filter(None, [os.environ.get("PYTHONPATH")])
-    return os.environ | ({"PYTHONPATH": os.pathsep.join(paths)} if paths else {})
+    quiet = str(PACKAGE / "course" / "lab")  # does not ask a beginner whether they want news
+    ours = {"JUPYTER_CONFIG_PATH": quiet, "PYTHONPATH": str(PACKAGE.parent) if course.clone else ""}
+    paths = {name: [path, os.environ.get(name, "")] for name, path in ours.items()}
+    joined = {name: os.pathsep.join(filter(None, both)) for name, both in paths.items()}
+    return os.environ | {name: path for name, path in joined.items() if path}
 
 
 def run(command: list[str], environment: dict[str, str]) -> int:

@@ -14,7 +14,7 @@ from ikteach.arrays import Array, Index
 from ikteach.body.rotation import sticks
 from ikteach.view.skin import Ball, Limb, Part
 
-AROUND, HALF = 16, 5  # a ball is cut into so many slices, and each half of it into so many rings
+AROUND, HALF = 12, 4  # a ball is cut into so many slices, and each half of it into so many rings
 
 
 def mesh(parts: Sequence[Part], opacity: float = 1.0) -> three.Mesh:

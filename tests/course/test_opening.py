@@ -5,6 +5,7 @@ import importlib.metadata
 import importlib.util
 import json
 import os
+import re
 import shutil
 import signal
 import socket
@@ -677,6 +678,8 @@ def test_jupyterlab_serves_the_first_chapter_and_stops_on_ctrl_c(
     address, page = server.get("/")
     assert address.endswith(f"/lab/tree/{first}")
     assert b'"news": {"disabled": true}' in page
+    (off,) = re.findall(rb'"disabledExtensions": \[(.*?)\]', page)
+    assert b"apputils-extension:announcements" in off  # which asks whether news are wanted
     assert json.loads(server.get("/lab/api/update")[1]) == {"notification": None}
     served = json.loads(server.get(f"/api/contents/{first}?format=text&type=file")[1])
     assert served["content"] == (tmp_path / "course" / first).read_text("utf-8")
