@@ -581,6 +581,8 @@ def test_wheel_carries_every_notebook(wheel: Path) -> None:
     expected = chapters(wheel.parent / "notebooks")
     assert {f"ikteach/notebooks/{name}" for name in expected} <= set(names)
     assert "ikteach/course/checking.py" in names
+    for name in ("pages/workbench.ipynb", "look/index.html.j2"):
+        assert f"ikteach/course/lecture/{name}" in names
     assert not any("/solutions/" in name for name in names)
 
 
