@@ -26,10 +26,13 @@ def chapters(root: Path = ROOT) -> dict[str, str]:
     }
 
 
-LECTURE = {  # plain pages, run by Voilà
-    "workbench": "voila/render/notebooks/09_workbench.ipynb",
-    "simulator": "voila/render/notebooks/10_reach.ipynb",
-}
+def lecture(root: Path = ROOT) -> dict[str, str]:
+    """Page for a lecture, such as "race", -> what the server is asked to open: the page in Voilà."""
+    pages = root / "ikteach" / "course" / "lecture" / "pages"
+    return {
+        path.stem: f"voila/render/{path.relative_to(root).as_posix()}"
+        for path in sorted(pages.glob("*.ipynb"))
+    }
 
 
 def on_binder(address: str, page: str) -> str:
@@ -77,7 +80,7 @@ def markdown(link: Callable[[str], str], start: str, root: Path = ROOT) -> str:
     """What opens the start page, each chapter, and the pages for a lecture, as three paragraphs."""
     pages = chapters(root)
     first = next(iter(pages.values()))
-    rows = {"Chapters": pages, "For a lecture": LECTURE}
+    rows = {"Chapters": pages, "For a lecture": lecture(root)}
     lines = [f"[{start}]({link(first)})"] + [
         f"{title}: " + " · ".join(f"[{name}]({link(page)})" for name, page in row.items())
         for title, row in rows.items()

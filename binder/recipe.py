@@ -83,7 +83,9 @@ class Build:
             else:
                 if not pip:
                     uv = " ".join([*UV, "pip install --python ${KERNEL_PYTHON_PREFIX}"])
-                    what = what.replace("${KERNEL_PYTHON_PREFIX}/bin/pip install --no-cache-dir", uv)
+                    what = what.replace(
+                        "${KERNEL_PYTHON_PREFIX}/bin/pip install --no-cache-dir", uv
+                    )
                 self.run("bash", "-c", what)
             yield f"{kind} {what}"
 

@@ -1,6 +1,6 @@
 """What Binder does with this repository, repeated here: build it, start it, open its links.
 
-    python -m binder.rehearse [--pip] [--all]
+    python -m binder.rehearse [--pip] [--every]
 
 The steps are those of the recipe that repo2docker prints for a clean clone of what is committed.
 They run in a new virtual environment instead of a container; then a Chromium opens the launch
@@ -29,22 +29,10 @@ from playwright.sync_api import Browser, Page, Route, sync_playwright
 from binder import links
 from binder.recipe import Build, clone, recipe
 
-PATIENCE = 120_000  # [ms] how long a page may take on a slow machine
+PATIENCE = 120  # [s] how long an answer may take on a slow machine
 MEMORY = 1024  # [MB] what mybinder.org promises
-FIRST = "lab/tree/notebooks/00_figure.ipynb"
-WALKING = "lab/tree/notebooks/07_gait.ipynb"
-MOVING = "+(document.querySelector('.ikteach-driver')?.dataset.shown ?? 0) >= 10"
-
-
-def build(folder: Path, pip: bool = False) -> Iterator[tuple[str, Build]]:
-    """Build in a new folder what is committed; say of each step what was done."""
-    source = folder / "ikteach"
-    clone(links.ROOT, source)
-    python, layers = recipe(source)
-    built = Build(folder, python)
-    yield f"{built.python}, where Binder has Python {python}", built
-    for step in built.follow(layers, source, pip):
-        yield step, built
+NOTEBOOK = ".jp-NotebookPanel:not(.lm-mod-hidden) h1, #rendered_cells h1"
+MOVES = "+(document.querySelector('.ikteach-driver')?.dataset.shown ?? 0) >= 10"  # frames
 
 
 class Server:
@@ -53,52 +41,112 @@ class Server:
     def __init__(self, built: Build) -> None:
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
-            self.port = free.getsockname()[1]
-        self.token = secrets.token_urlsafe(16)
-        self.base = f"http://127.0.0.1:{self.port}/user/ikteach-rehearsal/"
-        options = {"base_url": "/user/ikteach-rehearsal/", "token": self.token}
-        options["trust_xheaders"] = "True"
+            port = free.getsockname()[1]
+        self.token, self.home = secrets.token_urlsafe(16), built.home
+        self.address = f"http://127.0.0.1:{port}/user/rehearsal/"
         command = [built.environment["R2D_ENTRYPOINT"], "jupyter-lab", "--no-browser"]
-        command += ["--ip=127.0.0.1", f"--port={self.port}"]
+        command += ["--ip=127.0.0.1", f"--port={port}"]
         for app in ("NotebookApp", "ServerApp"):
-            command += [f"--{app}.{name}={value}" for name, value in options.items()]
+            command += [f"--{app}.base_url=/user/rehearsal/", f"--{app}.token={self.token}"]
+            command += [f"--{app}.trust_xheaders=True"]
         if os.getuid() == 0:  # which nobody is on Binder
             command.append("--allow-root")
-        self.log = (built.home / ".server.log").open("w+")
-        self.process = subprocess.Popen(
-            command, cwd=built.home, env=built.environment, stdout=self.log, stderr=self.log
-        )
+        self.log = self.home / ".server.log"
+        with self.log.open("w") as log:
+            self.process = subprocess.Popen(
+                command, cwd=built.home, env=built.environment, stdout=log, stderr=log
+            )
 
     def wait(self) -> None:
         """Until it answers."""
-        end = time.monotonic() + PATIENCE / 1000
+        end = time.monotonic() + PATIENCE
         while time.monotonic() < end and self.process.poll() is None:
             try:
                 self.ask("api/status")
                 return
             except (urllib.error.URLError, ConnectionError):
                 time.sleep(0.1)
-        self.log.seek(0)
-        raise RuntimeError(f"the server did not start:\n{self.log.read()[-4000:]}")
+        raise RuntimeError(f"the server did not start:\n{self.log.read_text()[-4000:]}")
 
-    def ask(self, path: str, method: str = "GET") -> Any:
-        """The answer to a request, from JSON."""
-        headers = {"Authorization": f"token {self.token}"}
-        request = urllib.request.Request(self.base + path, headers=headers, method=method)
-        with urllib.request.urlopen(request, timeout=PATIENCE / 1000) as answer:
+    def ask(self, path: str, method: str = "GET", **headers: str) -> Any:
+        """The answer to a request, from JSON; with the token, if no other headers are given."""
+        headers = headers or {"Authorization": f"token {self.token}"}
+        request = urllib.request.Request(self.address + path, headers=headers, method=method)
+        with urllib.request.urlopen(request, timeout=PATIENCE) as answer:
             return json.loads(answer.read() or "null")
 
     def memory(self) -> float:
         """[MB] of the server and its kernels; what they share is counted once."""
         root = psutil.Process(self.process.pid)
         family = [root, *root.children(recursive=True)]
-        return sum(one.memory_full_info().pss for one in family) / 2**20
+        return float(sum(one.memory_full_info().pss for one in family)) / 2**20
+
+    def stop_kernels(self) -> None:
+        """As if the next link had a server of its own."""
+        for kernel in self.ask("api/kernels"):
+            self.ask(f"api/kernels/{kernel['id']}", "DELETE")
 
     def stop(self) -> None:
         """End it and its kernels."""
         self.process.terminate()
-        self.process.wait(30)
-        self.log.close()
+        self.process.wait(PATIENCE)
+
+
+class Visit:
+    """A launch link, opened in a page that lets nothing in from elsewhere and hears of errors."""
+
+    def __init__(self, browser: Browser, server: Server, link: str) -> None:
+        self.server, self.wrong = server, list[str]()
+        self.page: Page = browser.new_page(viewport={"width": 1440, "height": 1000})
+        self.page.set_default_timeout(1000 * PATIENCE)
+        self.page.on("pageerror", lambda error: self.wrong.append(str(error)))
+        self.page.on("console", lambda m: self.wrong.append(m.text) if m.type == "error" else None)
+        self.page.route("**/*", self._guard)
+        joint = "&" if "?" in link else "?"
+        self.clicked = time.monotonic()
+        self.page.goto(f"{server.address}{link}{joint}token={server.token}", wait_until="commit")
+
+    def _guard(self, route: Route) -> None:
+        if route.request.url.startswith((self.server.address, "data:", "blob:")):
+            route.continue_()
+        else:
+            self.wrong.append(f"it asks for {route.request.url}")
+            route.abort()
+
+    def heading(self) -> str:
+        """The first heading, once it is seen."""
+        heading = self.page.locator(NOTEBOOK).first.inner_text()
+        return heading.removesuffix("¶").strip()
+
+    def run(self, cell: str) -> None:
+        """Run the cell with this text by keys, as a student does."""
+        self.page.locator(".jp-CodeCell", has_text=cell).first.locator(".cm-content").click()
+        self.page.keyboard.press("Control+Enter")
+
+    def moving(self) -> float:
+        """[s] from the click until a figure has moved."""
+        self.page.wait_for_function(MOVES)
+        return time.monotonic() - self.clicked
+
+    def close(self, shot: Path) -> None:
+        """Leave a picture; there must have been no error, and nothing asked of anyone else."""
+        self.page.screenshot(path=shot)
+        self.page.close()
+        self.server.stop_kernels()
+        if self.wrong:
+            raise RuntimeError("\n".join(self.wrong))
+
+
+def build(folder: Path, pip: bool = False) -> Iterator[tuple[str, Build]]:
+    """Build what is committed in a new folder, and say of each step what it was."""
+    clone(links.ROOT, folder / "ikteach")
+    python, layers = recipe(folder / "ikteach")
+    built = Build(folder, python)
+    yield f"{built.python}, where Binder has Python {python}", built
+    for step in built.follow(layers, folder / "ikteach", pip):
+        yield step, built
+    built.run("pip", "check")
+    yield "pip check", built
 
 
 @contextmanager
@@ -112,46 +160,52 @@ def serving(built: Build) -> Iterator[Server]:
         server.stop()
 
 
-class Visit:
-    """One launch link, opened in a page that lets nothing in from elsewhere."""
+def look(browser: Browser, server: Server, shots: Path, every: bool = False) -> Iterator[str]:
+    """Open the links, a few of them or every one, and say what was seen and when."""
+    lab, pages = links.chapters(), links.lecture()
+    play = {"7 gait": "player = GaitPlayer()"}
+    for name, link in (lab if every else {"7 gait": lab["7 gait"]}).items():
+        yield visit(browser, server, link, shots, play.get(name, ""))
+    for name in pages if every else ("workbench",):
+        yield visit(browser, server, pages[name], shots)
+    # A hub's link, on the server on which nbgitpuller acts.
+    address = (server.home.parent / "ikteach").as_uri()
+    yield visit(browser, server, links.pull(address, lab["0 figure"]), shots)
 
-    def __init__(self, browser: Browser, server: Server, link: str) -> None:
-        self.wrong: list[str] = []
-        self.page: Page = browser.new_page(viewport={"width": 1440, "height": 1000})
-        self.page.set_default_timeout(PATIENCE)
-        self.page.on("pageerror", lambda error: self.wrong.append(str(error)))
-        self.page.on("console", lambda said: said.type == "error" and self.wrong.append(said.text))
-        self._server = server
-        self.page.route("**/*", self._guard)
-        self._start = time.monotonic()
-        joint = "&" if "?" in link else "?"
-        address = f"{server.base}{link}{joint}reset&token={server.token}"
-        self.page.goto(address, wait_until="commit")
 
-    def _guard(self, route: Route) -> None:
-        inside = route.request.url.startswith((self._server.base, "data:", "blob:"))
-        if not inside:
-            self.wrong.append(f"asks for {route.request.url}")
-        (route.continue_ if inside else route.abort)()
+def visit(browser: Browser, server: Server, link: str, shots: Path, cell: str = "") -> str:
+    """Open a link, run a cell, wait for what moves: in a page of Voilà, or after a cell was run."""
+    seen = Visit(browser, server, link)
+    said = f"{seen.heading()!r} after {time.monotonic() - seen.clicked:.1f} s"
+    if cell:
+        seen.run(cell)
+    if cell or link.startswith("voila"):
+        said += f", a moving figure after {seen.moving():.1f} s"
+    said += f", {server.memory():.0f} of {MEMORY} MB"
+    shots.mkdir(exist_ok=True)
+    seen.close(shots / f"binder_{Path(link).stem}.png")
+    return f"{link}: {said}"
 
-    def heading(self) -> str:
-        """The first heading of the notebook, once it is there."""
-        return self.page.locator("h1:visible").first.inner_text().removesuffix("¶")
 
-    def run(self, cell: str) -> None:
-        """Run the cell with this text by keys, as a student does."""
-        self.page.locator(".jp-CodeCell", has_text=cell).first.locator(".cm-content").click()
-        self.page.keyboard.press("Control+Enter")
+def main(argv: list[str] | None = None) -> int:
+    """Rehearse, and print each step with its time."""
+    parser = argparse.ArgumentParser(description="Build, start and open as Binder does.")
+    parser.add_argument("--pip", action="store_true", help="install by pip, as Binder does; slow")
+    parser.add_argument("--every", action="store_true", help="open every link in the browser")
+    options = parser.parse_args(argv)
+    from tests.browser.conftest import SHOTS, open_browser
 
-    def until(self, condition: str = MOVING) -> float:
-        """[s] from the click until that holds in the page."""
-        self.page.wait_for_function(condition)
-        return time.monotonic() - self._start
+    with tempfile.TemporaryDirectory() as folder, sync_playwright() as play:
+        since = time.monotonic()
+        for step, built in build(Path(folder), options.pip):
+            print(f"{time.monotonic() - since:6.1f} s  {step}", flush=True)
+            since = time.monotonic()
+        with serving(built) as server:
+            print(f"{time.monotonic() - since:6.1f} s  the server answers", flush=True)
+            for said in look(open_browser(play), server, SHOTS, options.every):
+                print(said, flush=True)
+    return 0
 
-    def end(self) -> None:
-        """Close the page; it must have had no errors and asked for nothing from elsewhere."""
-        self.page.close()
-        for kernel in self._server.ask("api/kernels"):
-            self._server.ask(f"api/kernels/{kernel['id']}", "DELETE")
-        if self.wrong:
-            raise RuntimeError("\n".join(self.wrong))
+
+if __name__ == "__main__":
+    sys.exit(main())
