@@ -18,7 +18,7 @@ PROVIDERS = {"github.com": "gh", "gitlab.com": "gl"}  # Binder's short names
 
 
 def chapters(root: Path = ROOT) -> dict[str, str]:
-    """Chapter, such as "7 gait", -> what the server is asked to open: the notebook in JupyterLab."""
+    """Chapter, such as "7 gait", -> what the server is asked for: its notebook in JupyterLab."""
     names = [path.name for path in sorted((root / "notebooks").glob("[0-9][0-9]_*.ipynb"))]
     return {
         f"{int(name[:2])} {name[3:].removesuffix('.ipynb')}": f"lab/tree/notebooks/{name}"
@@ -27,7 +27,7 @@ def chapters(root: Path = ROOT) -> dict[str, str]:
 
 
 def lecture(root: Path = ROOT) -> dict[str, str]:
-    """Page for a lecture, such as "race", -> what the server is asked to open: the page in Voilà."""
+    """Page for a lecture, such as "race", -> what the server is asked for: the page by Voilà."""
     pages = root / "ikteach" / "course" / "lecture" / "pages"
     return {
         path.stem: f"voila/render/{path.relative_to(root).as_posix()}"

@@ -2,6 +2,7 @@
 
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -9,7 +10,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+ROOT = Path(__file__).resolve().parents[1]
 UV = [sys.executable, "-m", "uv"]
+PIP = "${KERNEL_PYTHON_PREFIX}/bin/pip install --no-cache-dir"
 LAYER = re.compile(r"^(COPY|RUN|ENV) (?:--chown=\S+ )?(.+)$", re.M)
 
 
@@ -41,24 +44,50 @@ def clone(source: Path, folder: Path) -> None:
 
 
 class Build:
-    """A virtual environment and a home folder, in which the layers of a recipe are laid."""
+    """What is committed, built in a folder as Binder builds it, less the container.
 
-    def __init__(self, folder: Path, python: str) -> None:
-        self.home, self.prefix = folder / "home", folder / "environment"
+    source       the clean clone
+    home         the folder that is the container's home
+    prefix       the virtual environment
+    environment  what the variables of the environment are
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.source, self.home, self.prefix = (
+            folder / n for n in ("ikteach", "home", "environment")
+        )
         self.home.mkdir()
-        self.python = self._make_environment(python)
-        caches = {"PIP_CACHE_DIR": ["pip", "cache", "dir"], "UV_CACHE_DIR": ["uv", "cache", "dir"]}
-        foreign = ("JUPYTER", "IPYTHON", "MPL", "XDG_", "PYTHON", "VIRTUAL_ENV")
-        self.environment = {k: v for k, v in os.environ.items() if not k.startswith(foreign)}
-        self.environment |= {
+        foreign = ("JUPYTER", "IPYTHON", "MPL", "PYTHON", "VIRTUAL_ENV", "XDG_")
+        own = {k: v for k, v in os.environ.items() if not k.startswith(foreign)}
+        self.environment = own | {
             "HOME": str(self.home),
             "REPO_DIR": str(self.home),
             "KERNEL_PYTHON_PREFIX": str(self.prefix),
-            "NB_PYTHON_PREFIX": str(self.prefix),
             "PATH": f"{self.prefix / 'bin'}{os.pathsep}{os.environ['PATH']}",
+            "UV_CACHE_DIR": told([*UV, "cache", "dir"]),  # which is not in that home
         }
-        for name, command in caches.items():  # the user's, though the home is another
-            self.environment[name] = told([sys.executable, "-m", *command])
+
+    def steps(self, pip: bool = False) -> Iterator[str]:
+        """Build, and say of each step what it was.
+
+        pip  install the packages as Binder does; else by uv, which needs seconds, not minutes
+        """
+        clone(ROOT, self.source)
+        python, layers = recipe(self.source)
+        yield f"the recipe: Python {python}, {len(layers)} layers"
+        yield self._make_environment(python)
+        for kind, what in layers:
+            if kind == "COPY":
+                self._copy(what)
+            elif kind == "ENV":
+                name, _, value = what.partition("=")
+                self.environment[name] = value.strip('"').replace("${REPO_DIR}", str(self.home))
+            else:
+                by_uv = f"{shlex.join(UV)} pip install --quiet --python ${{KERNEL_PYTHON_PREFIX}}"
+                self.run("bash", "-c", what if pip else what.replace(PIP, by_uv))
+            yield f"{kind} {what}"
+        self.run("pip", "check")
+        yield "pip check"
 
     def _make_environment(self, python: str) -> str:
         """With that version of Python if there is one, else with this Python; say which it is."""
@@ -69,29 +98,9 @@ class Build:
             subprocess.run([*make, sys.executable], check=True)
         return told([str(self.prefix / "bin" / "python"), "-V"])
 
-    def follow(self, layers: list[tuple[str, str]], source: Path, pip: bool) -> Iterator[str]:
-        """Do what each layer says, with files from `source`, and say what was done.
-
-        pip  install the packages as Binder does; else by uv, which needs seconds instead of minutes
-        """
-        for kind, what in layers:
-            if kind == "COPY":
-                self._copy(what, source)
-            elif kind == "ENV":
-                name, _, value = what.partition("=")
-                self.environment[name] = value.strip('"').replace("${REPO_DIR}", str(self.home))
-            else:
-                if not pip:
-                    uv = " ".join([*UV, "pip install --python ${KERNEL_PYTHON_PREFIX}"])
-                    what = what.replace(
-                        "${KERNEL_PYTHON_PREFIX}/bin/pip install --no-cache-dir", uv
-                    )
-                self.run("bash", "-c", what)
-            yield f"{kind} {what}"
-
-    def _copy(self, what: str, source: Path) -> None:
+    def _copy(self, what: str) -> None:
         start, end = (Path(word) for word in what.replace("${REPO_DIR}", str(self.home)).split())
-        start = source / start.relative_to("src")
+        start = self.source / start.relative_to("src")
         if start.is_dir():
             shutil.copytree(start, end, dirs_exist_ok=True)
         else:

@@ -27,11 +27,11 @@ import psutil
 from playwright.sync_api import Browser, Page, Route, sync_playwright
 
 from binder import links
-from binder.recipe import Build, clone, recipe
+from binder.recipe import Build
 
 PATIENCE = 120  # [s] how long an answer may take on a slow machine
 MEMORY = 1024  # [MB] what mybinder.org promises
-NOTEBOOK = ".jp-NotebookPanel:not(.lm-mod-hidden) h1, #rendered_cells h1"
+HEADING = ".jp-NotebookPanel:not(.lm-mod-hidden) h1, #rendered_cells h1"
 MOVES = "+(document.querySelector('.ikteach-driver')?.dataset.shown ?? 0) >= 10"  # frames
 
 
@@ -81,11 +81,6 @@ class Server:
         family = [root, *root.children(recursive=True)]
         return float(sum(one.memory_full_info().pss for one in family)) / 2**20
 
-    def stop_kernels(self) -> None:
-        """As if the next link had a server of its own."""
-        for kernel in self.ask("api/kernels"):
-            self.ask(f"api/kernels/{kernel['id']}", "DELETE")
-
     def stop(self) -> None:
         """End it and its kernels."""
         self.process.terminate()
@@ -102,9 +97,9 @@ class Visit:
         self.page.on("pageerror", lambda error: self.wrong.append(str(error)))
         self.page.on("console", lambda m: self.wrong.append(m.text) if m.type == "error" else None)
         self.page.route("**/*", self._guard)
-        joint = "&" if "?" in link else "?"
         self.clicked = time.monotonic()
-        self.page.goto(f"{server.address}{link}{joint}token={server.token}", wait_until="commit")
+        address = f"{server.address}{link}{'&' if '?' in link else '?'}token={server.token}"
+        self.page.goto(address, wait_until="commit")
 
     def _guard(self, route: Route) -> None:
         if route.request.url.startswith((self.server.address, "data:", "blob:")):
@@ -115,11 +110,11 @@ class Visit:
 
     def heading(self) -> str:
         """The first heading, once it is seen."""
-        heading = self.page.locator(NOTEBOOK).first.inner_text()
-        return heading.removesuffix("¶").strip()
+        return self.page.locator(HEADING).first.inner_text().removesuffix("¶").strip()
 
     def run(self, cell: str) -> None:
-        """Run the cell with this text by keys, as a student does."""
+        """Run the cell with this text by keys, as soon as the kernel is there."""
+        self.page.locator("#jp-main-statusbar", has_text="| Idle").wait_for()
         self.page.locator(".jp-CodeCell", has_text=cell).first.locator(".cm-content").click()
         self.page.keyboard.press("Control+Enter")
 
@@ -129,24 +124,14 @@ class Visit:
         return time.monotonic() - self.clicked
 
     def close(self, shot: Path) -> None:
-        """Leave a picture; there must have been no error, and nothing asked of anyone else."""
+        """Leave a picture, and the server as if the next link had one of its own."""
+        shot.parent.mkdir(exist_ok=True)
         self.page.screenshot(path=shot)
         self.page.close()
-        self.server.stop_kernels()
-        if self.wrong:
-            raise RuntimeError("\n".join(self.wrong))
-
-
-def build(folder: Path, pip: bool = False) -> Iterator[tuple[str, Build]]:
-    """Build what is committed in a new folder, and say of each step what it was."""
-    clone(links.ROOT, folder / "ikteach")
-    python, layers = recipe(folder / "ikteach")
-    built = Build(folder, python)
-    yield f"{built.python}, where Binder has Python {python}", built
-    for step in built.follow(layers, folder / "ikteach", pip):
-        yield step, built
-    built.run("pip", "check")
-    yield "pip check", built
+        for kernel in self.server.ask("api/kernels"):
+            self.server.ask(f"api/kernels/{kernel['id']}", "DELETE")
+        for workspace in self.server.ask("lab/api/workspaces")["workspaces"]["ids"]:
+            self.server.ask(f"lab/api/workspaces/{workspace}", "DELETE")
 
 
 @contextmanager
@@ -174,16 +159,22 @@ def look(browser: Browser, server: Server, shots: Path, every: bool = False) -> 
 
 
 def visit(browser: Browser, server: Server, link: str, shots: Path, cell: str = "") -> str:
-    """Open a link, run a cell, wait for what moves: in a page of Voilà, or after a cell was run."""
+    """Open a link, run a cell if one is named, and say what was seen.
+
+    There must be no error in the page, which asks nothing of anybody else; Voilà's must move.
+    """
     seen = Visit(browser, server, link)
-    said = f"{seen.heading()!r} after {time.monotonic() - seen.clicked:.1f} s"
-    if cell:
-        seen.run(cell)
-    if cell or link.startswith("voila"):
-        said += f", a moving figure after {seen.moving():.1f} s"
-    said += f", {server.memory():.0f} of {MEMORY} MB"
-    shots.mkdir(exist_ok=True)
-    seen.close(shots / f"binder_{Path(link).stem}.png")
+    try:
+        said = f"{seen.heading()!r} after {time.monotonic() - seen.clicked:.1f} s"
+        if cell:
+            seen.run(cell)
+        if cell or link.startswith("voila"):
+            said += f", a moving figure after {seen.moving():.1f} s"
+        said += f", {server.memory():.0f} of {MEMORY} MB"
+    finally:
+        seen.close(shots / f"binder_{link.partition('?')[0].rpartition('/')[2]}.png")
+    if seen.wrong:
+        raise RuntimeError(f"{link}: " + "; ".join(seen.wrong))
     return f"{link}: {said}"
 
 
@@ -197,7 +188,8 @@ def main(argv: list[str] | None = None) -> int:
 
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as play:
         since = time.monotonic()
-        for step, built in build(Path(folder), options.pip):
+        built = Build(Path(folder))
+        for step in built.steps(options.pip):
             print(f"{time.monotonic() - since:6.1f} s  {step}", flush=True)
             since = time.monotonic()
         with serving(built) as server:
