@@ -21,6 +21,26 @@ from tests.browser.test_gait import CANVAS, DRIVER, SHOWN, pixels
 KERNEL = r'"kernelId": ?"([\w-]+)"'
 
 
+# Ask the page's kernel to run code, then something harmless, and say what was answered.
+INTRUDE = """([kernel, token]) => new Promise(done => {
+  const url = `ws://${location.host}/api/kernels/${kernel}/channels?${token}&session_id=intruder`;
+  const socket = new WebSocket(url), answers = [];
+  const ask = (msg_type, content) => socket.send(JSON.stringify({
+    header: { msg_id: msg_type, msg_type, session: "intruder", username: "", version: "5.3" },
+    parent_header: {}, metadata: {}, content, channel: "shell" }));
+  socket.onmessage = ({ data }) => {
+    const { channel, parent_header, header } = JSON.parse(data);
+    if (channel === "shell" && parent_header.session === "intruder") answers.push(header.msg_type);
+    if (answers.includes("kernel_info_reply")) { socket.close(); done(answers); }
+  };
+  socket.onopen = () => {
+    ask("execute_request", { code: "1", silent: false, store_history: false, user_expressions: {},
+                             allow_stdin: false });
+    ask("kernel_info_request", {});
+  };
+})"""
+
+
 class Lecture:
     """`python -m ikteach lecture` and one page of it, in which nothing from elsewhere is let in."""
 
@@ -169,6 +189,11 @@ def test_a_second_visitor_has_a_kernel_of_their_own(lecture: Lecture) -> None:
             text += answer.readline().decode()
         assert found[1] != lecture.kernel()
         assert lecture.lives(found[1])
+
+
+def test_a_visitor_cannot_run_code(lecture: Lecture) -> None:
+    page = lecture.opened("simulator")
+    assert page.evaluate(INTRUDE, [lecture.kernel(), lecture.token]) == ["kernel_info_reply"]
 
 
 def test_without_the_token_nobody_gets_in(lecture: Lecture) -> None:
