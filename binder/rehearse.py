@@ -20,7 +20,7 @@ import urllib.error
 import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any
 
 import psutil
@@ -172,7 +172,7 @@ def visit(browser: Browser, server: Server, link: str, shots: Path, cell: str = 
             said += f", a moving figure after {seen.moving():.1f} s"
         said += f", {server.memory():.0f} of {MEMORY} MB"
     finally:
-        seen.close(shots / f"binder_{link.partition('?')[0].rpartition('/')[2]}.png")
+        seen.close(shots / f"binder_{PurePosixPath(link.partition('?')[0]).stem}.png")
     if seen.wrong:
         raise RuntimeError(f"{link}: " + "; ".join(seen.wrong))
     return f"{link}: {said}"

@@ -2,4 +2,12 @@
 
 from ikteach.course.lecture.server import SETTINGS
 
-c.VoilaConfiguration.update(SETTINGS["VoilaConfiguration"], template="ikteach")  # noqa: F821
+
+def own_mathjax(page, **_):
+    """Within another server, Voilà would fetch MathJax from a content network; None: its own."""
+    return page | {"fullMathjaxUrl": None, "mathjaxConfig": None}
+
+
+c.VoilaConfiguration.update(  # noqa: F821
+    SETTINGS["VoilaConfiguration"], template="ikteach", page_config_hook=own_mathjax
+)
