@@ -12,6 +12,7 @@ from pathlib import Path
 from urllib.parse import quote, urlencode, urlsplit
 
 ROOT = Path(__file__).resolve().parents[1]
+README = ROOT / "README.md"
 FIRST, LAST = "<!-- links by binder/links.py -->\n", "<!-- end of links -->\n"
 BADGE = "https://mybinder.org/badge_logo.svg"
 PROVIDERS = {"github.com": "gh", "gitlab.com": "gl"}  # Binder's short names
@@ -111,7 +112,7 @@ def main(argv: list[str] | None = None) -> int:
             start = f"**Open the course on {urlsplit(options.hub).netloc}**"
             text += "\n" + markdown(lambda page: on_hub(options.hub, options.address, page), start)
         if options.write:
-            write(text, ROOT / "README.md")
+            write(text, README)
         else:
             print(text, end="")
     except ValueError as error:

@@ -21,7 +21,7 @@ import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import Any, NamedTuple
 
 import psutil
 from playwright.sync_api import Browser, Page, Route, sync_playwright
@@ -31,6 +31,7 @@ from binder.recipe import Build
 
 PATIENCE = 120  # [s] how long an answer may take on a slow machine
 MEMORY = 1024  # [MB] what mybinder.org promises
+WALK = "7 gait"
 HEADING = ".jp-NotebookPanel:not(.lm-mod-hidden) h1, #rendered_cells h1"
 MOVES = "+(document.querySelector('.ikteach-driver')?.dataset.shown ?? 0) >= 10"  # frames
 
@@ -145,37 +146,52 @@ def serving(built: Build) -> Iterator[Server]:
         server.stop()
 
 
-def look(browser: Browser, server: Server, shots: Path, every: bool = False) -> Iterator[str]:
-    """Open the links, a few of them or every one, and say what was seen and when."""
+class Seen(NamedTuple):
+    """What a link opened: its first heading, when it was there, and when a figure had moved [s]."""
+
+    link: str
+    heading: str
+    opened: float
+    moved: float | None
+    memory: float
+
+    def __str__(self) -> str:
+        moved = "" if self.moved is None else f", a moving figure after {self.moved:.1f} s"
+        return (
+            f"{self.link}: {self.heading!r} after {self.opened:.1f} s{moved}, "
+            f"{self.memory:.0f} of {MEMORY} MB"
+        )
+
+
+def look(browser: Browser, server: Server, shots: Path, every: bool = False) -> Iterator[Seen]:
+    """Open the links, every one or one of each kind, and say what was seen and when."""
     lab, pages = links.chapters(), links.lecture()
-    play = {"7 gait": "player = GaitPlayer()"}
-    for name, link in (lab if every else {"7 gait": lab["7 gait"]}).items():
-        yield visit(browser, server, link, shots, play.get(name, ""))
+    for name in lab if every else (WALK,):
+        yield visit(browser, server, lab[name], shots, "player = GaitPlayer()" * (name == WALK))
     for name in pages if every else ("workbench",):
         yield visit(browser, server, pages[name], shots)
-    # A hub's link, on the server on which nbgitpuller acts.
-    address = (server.home.parent / "ikteach").as_uri()
-    yield visit(browser, server, links.pull(address, lab["0 figure"]), shots)
+    # A hub's link: what nbgitpuller is asked on a student's own server.
+    clone = (server.home.parent / "ikteach").as_uri()
+    yield visit(browser, server, links.pull(clone, next(iter(lab.values()))), shots)
 
 
-def visit(browser: Browser, server: Server, link: str, shots: Path, cell: str = "") -> str:
+def visit(browser: Browser, server: Server, link: str, shots: Path, cell: str = "") -> Seen:
     """Open a link, run a cell if one is named, and say what was seen.
 
     There must be no error in the page, which asks nothing of anybody else; Voilà's must move.
     """
-    seen = Visit(browser, server, link)
+    page = Visit(browser, server, link)
     try:
-        said = f"{seen.heading()!r} after {time.monotonic() - seen.clicked:.1f} s"
+        heading, opened = page.heading(), time.monotonic() - page.clicked
         if cell:
-            seen.run(cell)
-        if cell or link.startswith("voila"):
-            said += f", a moving figure after {seen.moving():.1f} s"
-        said += f", {server.memory():.0f} of {MEMORY} MB"
+            page.run(cell)
+        moved = page.moving() if cell or link.startswith("voila") else None
+        seen = Seen(link, heading, opened, moved, server.memory())
     finally:
-        seen.close(shots / f"binder_{PurePosixPath(link.partition('?')[0]).stem}.png")
-    if seen.wrong:
-        raise RuntimeError(f"{link}: " + "; ".join(seen.wrong))
-    return f"{link}: {said}"
+        page.close(shots / f"binder_{PurePosixPath(link.partition('?')[0]).stem}.png")
+    if page.wrong:
+        raise RuntimeError(f"{link}: " + "; ".join(page.wrong))
+    return seen
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -194,8 +210,8 @@ def main(argv: list[str] | None = None) -> int:
             since = time.monotonic()
         with serving(built) as server:
             print(f"{time.monotonic() - since:6.1f} s  the server answers", flush=True)
-            for said in look(open_browser(play), server, SHOTS, options.every):
-                print(said, flush=True)
+            for seen in look(open_browser(play), server, SHOTS, options.every):
+                print(seen, flush=True)
     return 0
 
 
