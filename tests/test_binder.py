@@ -81,46 +81,52 @@ def opened(text: str) -> list[str]:
     queries = [
         parse_qs(urlsplit(link).query) for link in re.findall(r"\]\((https://[^)]+)\)", text)
     ]
-    pages = [query["urlpath"][0] for query in queries if "urlpath" in query]
-    return [page.split("/", 2)[2] for page in pages]
+    pages = [
+        (query["urlpath"][0].split("/", 2)[2], "repo" in query)
+        for query in queries
+        if "urlpath" in query
+    ]
+    return [page.partition("/")[2] if in_folder else page for page, in_folder in pages]
 
 
 @pytest.fixture
 def readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     copy = tmp_path / "README.md"
-    copy.write_text(f"Before.\n{links.FIRST}old\n{links.LAST}After.\n", encoding="utf-8")
+    copy.write_text(README.read_text(encoding="utf-8"), encoding="utf-8")
     monkeypatch.setattr(links, "README", copy)
     return copy
 
 
 def test_links_are_written_into_the_readme_and_lead_to_files(readme: Path) -> None:
     assert links.main([ADDRESS, "--write"]) == 0
-    once = readme.read_text(encoding="utf-8")
-    assert once.startswith("Before.\n")
-    assert once.endswith("After.\n")
-    assert "old" not in once
-    assert "https://mybinder.org/v2/gh/someone/ikteach/HEAD?urlpath=lab%2Ftree%2F" in once
-    pages = opened(once)
+    written = readme.read_text(encoding="utf-8")
+    before, _, rest = written.partition(links.FIRST)
+    made, _, after = rest.partition(links.LAST)
+    kept = README.read_text(encoding="utf-8")
+    assert kept.startswith(before + links.FIRST)
+    assert kept.endswith(links.LAST + after)
+    assert "https://mybinder.org/v2/gh/someone/ikteach/HEAD?urlpath=lab%2Ftree%2F" in made
+    pages = opened(made)
     assert len(pages) == 1 + len(links.chapters()) + len(links.lecture())
     assert {f"notebooks/{file.name}" for file in (ROOT / "notebooks").glob("*.ipynb")} < set(pages)
-    for page in pages + opened(README.read_text(encoding="utf-8")):
+    for page in pages + opened(kept):
         assert (ROOT / page).is_file(), page
     assert links.main([ADDRESS, "--write"]) == 0
-    assert readme.read_text(encoding="utf-8") == once
+    assert readme.read_text(encoding="utf-8") == written
 
 
 def test_a_hub_s_links_fetch_the_repository_and_open_it(capsys: pytest.CaptureFixture[str]) -> None:
     assert links.main([f"{ADDRESS}.git", "--hub", f"{HUB}/"]) == 0
-    found = re.findall(rf"\(({HUB}[^)]+)\)", capsys.readouterr().out)
+    _, _, made = capsys.readouterr().out.partition("hub.example.edu**")
+    found = [urlsplit(link) for link in re.findall(r"\(([^)]+)\)", made)]
     assert len(found) == 1 + len(links.chapters()) + len(links.lecture())
     for link in found:
-        parts = urlsplit(link)
-        query = parse_qs(parts.query)
-        assert parts.path == "/hub/user-redirect/git-pull"
-        assert query["repo"] == [f"{ADDRESS}.git"]
-        folder, _, file = query["urlpath"][0].split("/", 2)[2].partition("/")
-        assert folder == "ikteach"
-        assert (ROOT / file).is_file()
+        assert (link.scheme, link.netloc) == ("https", "hub.example.edu")
+        assert link.path == "/hub/user-redirect/git-pull"
+        assert parse_qs(link.query)["repo"] == [f"{ADDRESS}.git"]
+        assert parse_qs(link.query)["urlpath"][0].split("/")[2] == "ikteach"
+    for page in opened(made):
+        assert (ROOT / page).is_file(), page
 
 
 @pytest.mark.parametrize(
