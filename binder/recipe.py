@@ -53,9 +53,7 @@ class Build:
     """
 
     def __init__(self, folder: Path) -> None:
-        self.source, self.home, self.prefix = (
-            folder / n for n in ("ikteach", "home", "environment")
-        )
+        self.source, self.home, self.prefix = (folder / n for n in ("clone", "home", "environment"))
         self.home.mkdir()
         foreign = ("JUPYTER", "IPYTHON", "MPL", "PYTHON", "VIRTUAL_ENV", "XDG_")
         own = {k: v for k, v in os.environ.items() if not k.startswith(foreign)}

@@ -43,7 +43,8 @@ class Server:
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             port = free.getsockname()[1]
-        self.token, self.home = secrets.token_urlsafe(16), built.home
+        self.home, self.source = built.home, built.source
+        self.token = secrets.token_urlsafe(16)
         self.address = f"http://127.0.0.1:{port}/user/rehearsal/"
         command = [built.environment["R2D_ENTRYPOINT"], "jupyter-lab", "--no-browser"]
         command += ["--ip=127.0.0.1", f"--port={port}"]
@@ -171,8 +172,8 @@ def look(browser: Browser, server: Server, shots: Path, every: bool = False) -> 
     for name in pages if every else ("workbench",):
         yield visit(browser, server, pages[name], shots)
     # A hub's link: what nbgitpuller is asked on a student's own server.
-    clone = (server.home.parent / "ikteach").as_uri()
-    yield visit(browser, server, links.pull(clone, next(iter(lab.values()))), shots)
+    pull = links.pull(server.source.as_uri(), next(iter(lab.values())))
+    yield visit(browser, server, pull, shots)
 
 
 def visit(browser: Browser, server: Server, link: str, shots: Path, cell: str = "") -> Seen:

@@ -61,7 +61,7 @@ def test_links_open_what_they_say_and_it_moves(server: Server, browser: Browser)
     for seen in look(browser, server, SHOTS, every):
         print(seen)
         path = seen.link.partition("urlpath=")[2].replace("%2F", "/") or seen.link
-        file = ROOT / path.split("/", 2)[2].removeprefix("ikteach/" * ("git-pull" in seen.link))
+        file = ROOT / path.split("/", 2)[2].removeprefix("clone/")
         assert seen.heading == title(file)
         assert seen.memory < MEMORY
-    assert (server.home / "ikteach" / "notebooks").is_dir()
+    assert (server.home / "clone" / "notebooks").is_dir()
