@@ -84,9 +84,13 @@ class Server:
         return float(sum(one.memory_full_info().pss for one in family)) / 2**20
 
     def stop(self) -> None:
-        """End it and its kernels."""
+        """End it and its kernels, and, if a thread keeps them from ending, kill them."""
+        root = psutil.Process(self.process.pid)
+        family = [root, *root.children(recursive=True)]
         self.process.terminate()
-        self.process.wait(PATIENCE)
+        for left in psutil.wait_procs(family, timeout=5)[1]:
+            left.kill()
+        self.process.wait()
 
 
 class Visit:
