@@ -85,6 +85,8 @@ class Server:
 
     def stop(self) -> None:
         """End it and its kernels, and, if a thread keeps them from ending, kill them."""
+        if self.process.poll() is not None:
+            return
         root = psutil.Process(self.process.pid)
         family = [root, *root.children(recursive=True)]
         self.process.terminate()

@@ -28,7 +28,7 @@ EVERYTHING = BELOW.keys() | {"", "view", "course"}
 TOP = {"view", "course", "__main__"}
 SCREEN = {"matplotlib", "ipywidgets", "pythreejs", "anywidget", "traitlets", "IPython"}
 PAGES = {"nbformat", "nbclient", "nbconvert", "latex2mathml", "pygments"}
-SERVER = {"voila", "tornado"}
+SERVER = {"voila", "tornado", "jupyter_client"}
 HEAVY = ["pandas", "matplotlib", "ipywidgets", "pythreejs", "anywidget", "traitlets"]
 
 

@@ -38,6 +38,7 @@ def test_a_page_is_words_one_figure_words_and_leads_to_all_others(page: Path) ->
     for what in ("What you see.", "What to try.", "Keys."):
         assert f"**{what}**" in words.source
     assert len(words.source.split()) < 180
+    exec(figure.source, {})
 
 
 def test_pages_are_copied_and_what_was_changed_is_kept(
@@ -79,13 +80,14 @@ def test_in_a_room_visitors_write_no_files(monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_the_server_shows_pages_and_nothing_else_and_sends_at_once(tmp_path: Path) -> None:
     from jupyter_server.services.kernels.websocket import KernelWebsocketHandler
+    from voila.tornado.kernel_websocket_handler import VoilaKernelWebsocketHandler
 
     before = KernelWebsocketHandler.open
     served = Lecture.of(tmp_path, "workbench.ipynb", None)
     served.initialize([])
     try:
         served.init_settings()
-        assert KernelWebsocketHandler.open is not before
+        assert VoilaKernelWebsocketHandler.open is not before
     finally:
         KernelWebsocketHandler.open = before
     handlers: list[Any] = served.init_handlers()

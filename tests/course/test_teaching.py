@@ -9,7 +9,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ikteach import figures
+from ikteach import figures, gait, study
+from ikteach.course.collect import collect
+from ikteach.course.record import store
 from ikteach.study import distances
 from ikteach.view import BendBench, ColumnPoser, GaitPlayer, Poser, Simulator, Workbench
 from ikteach.view.caps import CapPlayer
@@ -43,6 +45,20 @@ def standing(session: Any, ticks: int = 150) -> pd.DataFrame:
 
 def test_there_is_a_row_for_each_chapter() -> None:
     assert re.findall(r"^\| (\d+) \|", TEXT, re.MULTILINE) == [str(n) for n in range(11)]
+
+
+def test_what_students_are_told_to_write_is_collected(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    store("quiz", "03.stuck", answer="It stands still", right=True, tries=1)
+    walk = gait.walking(gait.walking.clock(3))
+    names = {"study": study, "table": study.compare(*figures.human(), walk)}
+    exec(re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)[0], names)
+    table, logs, skipped = collect(tmp_path)
+    assert skipped == {}
+    assert {"ada", "predictions"} == set(table["student"])
+    assert {"method", "effector", "jitter"} <= set(logs.columns)
 
 
 def test_0_a_turn_of_a_straight_arm_moves_nothing() -> None:

@@ -53,17 +53,20 @@ def parse(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
 
 def show(options: argparse.Namespace, extra: list[str]) -> int:
     """Copy the pages, and serve them until Ctrl-C."""
-    from ikteach.course.lecture.server import Lecture
-
     folder = options.folder.expanduser().resolve()
     print(*told(deliver(PAGES, folder), folder), sep="\n")
     os.environ.pop(ROOM, None)
     if options.room:
         os.environ[ROOM] = "1"
     browse = not options.no_browser
-    lecture = Lecture.of(folder, FIRST, options.port, room=options.room, browse=browse)
-    lecture.initialize(extra)
-    lecture.start()
+    try:
+        from ikteach.course.lecture.server import Lecture
+
+        lecture = Lecture.of(folder, FIRST, options.port, room=options.room, browse=browse)
+        lecture.initialize(extra)
+        lecture.start()
+    except KeyboardInterrupt:  # before it serves: then it hears of it itself
+        return 130
     return 0
 
 

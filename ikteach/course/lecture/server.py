@@ -1,12 +1,15 @@
 """Voilà as a lecture needs it: pages only, a token always, nothing fetched from elsewhere."""
 
+import logging
 import secrets
 import threading
 import webbrowser
 from pathlib import Path
 from typing import Any
 
+from jupyter_client.kernelspec import KernelSpec, KernelSpecManager
 from tornado.web import RedirectHandler
+from tornado.websocket import WebSocketClosedError
 from traitlets.config import Config
 from voila.app import Voila
 from voila.tornado.contentshandler import VoilaContentsHandler
@@ -26,20 +29,20 @@ NEEDED = [  # of all that is installed for JupyterLab
     "jupyter-threejs",
     "jupyterlab-datawidgets",
 ]
-SETTINGS = {
-    "VoilaConfiguration": {
-        "template": "lab",
-        "theme": "light",
-        "allow_template_override": "NO",
-        "allow_theme_override": "NO",
-        "extension_allowlist": NEEDED,
-    },
-    "MappingKernelManager": {"cull_interval": ASK_EVERY, "cull_idle_timeout": ALONE},
-}
 TO_ALL = """\
 Others in this network can open it too, with this address, token and all. Each page they open is a
 kernel on this machine (about 150 MB); they can move the figures and run no code of their own. What
 goes over the network is not encrypted."""
+
+
+class Quiet(KernelSpecManager):
+    """Kernels that tell of errors only: that one listens on this machine is no news."""
+
+    def get_kernel_spec(self, kernel_name: str) -> KernelSpec:
+        """What starts the kernel of that name."""
+        spec = super().get_kernel_spec(kernel_name)
+        spec.argv = [*spec.argv, "--log-level=ERROR"]
+        return spec
 
 
 class Page(TornadoVoilaHandler):  # type: ignore[misc]
@@ -49,6 +52,19 @@ class Page(TornadoVoilaHandler):  # type: ignore[misc]
         """Send the page, figure by figure."""
         self.xsrf_token  # noqa: B018 - to ask for it is to have the cookie set
         await super().get(path)
+
+
+SETTINGS = {
+    "VoilaConfiguration": {
+        "template": "lab",
+        "theme": "light",
+        "allow_template_override": "NO",
+        "allow_theme_override": "NO",
+        "extension_allowlist": NEEDED,
+        "kernel_spec_manager_class": Quiet,
+    },
+    "MappingKernelManager": {"cull_interval": ASK_EVERY, "cull_idle_timeout": ALONE},
+}
 
 
 class Lecture(Voila):  # type: ignore[misc]
@@ -95,6 +111,14 @@ class Lecture(Voila):  # type: ignore[misc]
                 pages.append((path, Page if handler is TornadoVoilaHandler else handler, *options))
         first = {"url": f"{self.base_url}voila/render/{self.first}", "permanent": False}
         return [(self.server_url, RedirectHandler, first), *pages]
+
+    def start(self) -> None:
+        """Serve; that a page was closed while a frame was under way to it is no news."""
+        logging.getLogger("asyncio").addFilter(
+            lambda record: not (record.exc_info and record.exc_info[0] is WebSocketClosedError)
+        )
+        logging.getLogger("tornado").setLevel(logging.ERROR)
+        super().start()
 
     def launch_browser(self) -> None:
         """Say where the first page is, now that the port is known, and open it."""
