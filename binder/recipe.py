@@ -13,6 +13,7 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parents[1]
 UV = [sys.executable, "-m", "uv"]
 PIP = "${KERNEL_PYTHON_PREFIX}/bin/pip install --no-cache-dir"
+BY_UV = f"{shlex.join(UV)} pip install --quiet --python ${{KERNEL_PYTHON_PREFIX}}"
 LAYER = re.compile(r"^(COPY|RUN|ENV) (?:--chown=\S+ )?(.+)$", re.M)
 
 
@@ -81,9 +82,9 @@ class Build:
                 name, _, value = what.partition("=")
                 self.environment[name] = value.strip('"').replace("${REPO_DIR}", str(self.home))
             else:
-                by_uv = f"{shlex.join(UV)} pip install --quiet --python ${{KERNEL_PYTHON_PREFIX}}"
-                self.run("bash", "-c", what if pip else what.replace(PIP, by_uv))
-            yield f"{kind} {what}"
+                self.run("bash", "-c", what if pip else what.replace(PIP, BY_UV))
+            by = ", by uv" if PIP in what and not pip else ""
+            yield f"{kind} {what}{by}"
         self.run("pip", "check")
         yield "pip check"
 
