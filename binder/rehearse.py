@@ -129,7 +129,9 @@ class Visit:
     def moving(self) -> float:
         """[s] from the click until a figure has moved."""
         self.page.wait_for_function(MOVES)
-        return time.monotonic() - self.clicked
+        moved = time.monotonic() - self.clicked
+        self.page.locator(".jupyter-threejs canvas").first.scroll_into_view_if_needed()
+        return moved
 
     def close(self, shot: Path) -> None:
         """Leave a picture, and the server as if the next link had one of its own."""
