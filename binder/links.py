@@ -1,0 +1,125 @@
+"""Links that open the course: on Binder, and on a class's own JupyterHub. Needs Python alone.
+
+    python binder/links.py https://github.com/OWNER/REPOSITORY [--hub https://HUB] [--write]
+
+prints them as Markdown; with --write it puts them into README.md, between its two marks.
+"""
+
+import argparse
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from urllib.parse import quote, urlencode, urlsplit
+
+ROOT = Path(__file__).resolve().parents[1]
+README = ROOT / "README.md"
+FIRST, LAST = "<!-- links by binder/links.py -->\n", "<!-- end of links -->\n"
+BADGE = "https://mybinder.org/badge_logo.svg"
+PROVIDERS = {"github.com": "gh", "gitlab.com": "gl"}  # Binder's short names
+
+
+def chapters(root: Path = ROOT) -> dict[str, str]:
+    """Chapter, such as "7 gait", -> what the server is asked for: its notebook in JupyterLab."""
+    names = [path.name for path in sorted((root / "notebooks").glob("[0-9][0-9]_*.ipynb"))]
+    return {
+        f"{int(name[:2])} {name[3:].removesuffix('.ipynb')}": f"lab/tree/notebooks/{name}"
+        for name in names
+    }
+
+
+def lecture(root: Path = ROOT) -> dict[str, str]:
+    """Page for a lecture, such as "race", -> what the server is asked for: the page by Voilà."""
+    pages = root / "ikteach" / "course" / "lecture" / "pages"
+    return {
+        path.stem: f"voila/render/{path.relative_to(root).as_posix()}"
+        for path in sorted(pages.glob("*.ipynb"))
+    }
+
+
+def on_binder(address: str, page: str) -> str:
+    """The link that has mybinder.org start the repository, built if need be, with a page open."""
+    host, path = repository(address)
+    if host not in PROVIDERS:
+        source = f"git/{quote(address, safe='')}"
+    elif host == "gitlab.com":
+        source = f"gl/{quote(path, safe='')}"
+    else:
+        source = f"gh/{path}"
+    return f"https://mybinder.org/v2/{source}/HEAD?{urlencode({'urlpath': page})}"
+
+
+def on_hub(hub: str, address: str, page: str) -> str:
+    """The link that fetches the repository for the student, or what is new of it, and opens a page.
+
+    nbgitpuller does it, which the hub must have; what a student has changed it keeps.
+    """
+    if urlsplit(hub).scheme != "https" or not urlsplit(hub).netloc:
+        raise ValueError(f"{hub!r} is not a hub's address, such as https://hub.example.edu")
+    repository(address)
+    return f"{hub.rstrip('/')}/hub/user-redirect/{pull(address, page)}"
+
+
+def pull(address: str, page: str) -> str:
+    """What nbgitpuller is asked on the student's own server; it names the folder by the address."""
+    folder = address.rstrip("/").rpartition("/")[2].removesuffix(".git")
+    application, way, path = page.split("/", 2)
+    query = urlencode({"repo": address, "urlpath": f"{application}/{way}/{folder}/{path}"})
+    return f"git-pull?{query}"
+
+
+def repository(address: str) -> tuple[str, str]:
+    """The host of a repository's address, and its path there without `.git`."""
+    parts = urlsplit(address)
+    path = parts.path.strip("/").removesuffix(".git")
+    if parts.scheme not in ("http", "https") or not parts.netloc or "/" not in path:
+        wanted = "https://github.com/OWNER/REPOSITORY"
+        raise ValueError(f"{address!r} is not a repository's address, such as {wanted}")
+    return parts.netloc, path
+
+
+def markdown(link: Callable[[str], str], start: str, root: Path = ROOT) -> str:
+    """What opens the start page, each chapter, and the pages for a lecture, as three paragraphs."""
+    pages = chapters(root)
+    first = next(iter(pages.values()))
+    rows = {"Chapters": pages, "For a lecture": lecture(root)}
+    lines = [f"[{start}]({link(first)})"] + [
+        f"{title}: " + " · ".join(f"[{name}]({link(page)})" for name, page in row.items())
+        for title, row in rows.items()
+    ]
+    return "\n\n".join(lines) + "\n"
+
+
+def write(text: str, readme: Path) -> None:
+    """Put the links into the README between its marks; nothing else in it changes."""
+    before, first, rest = readme.read_text(encoding="utf-8").partition(FIRST)
+    _, last, after = rest.partition(LAST)
+    if not last:
+        raise ValueError(f"{readme} lacks the two marks between which the links go")
+    readme.write_text(f"{before}{first}{text}{last}{after}", encoding="utf-8")
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Print the links, or write them into the README."""
+    parser = argparse.ArgumentParser(description="Links that open the course without installing.")
+    parser.add_argument("address", help="of the repository: https://github.com/OWNER/REPOSITORY")
+    parser.add_argument("--hub", help="of your JupyterHub, which has this package and nbgitpuller")
+    parser.add_argument("--write", action="store_true", help="write them into README.md")
+    options = parser.parse_args(argv)
+    try:
+        badge = f"![Open the course on Binder]({BADGE})"
+        text = markdown(lambda page: on_binder(options.address, page), badge)
+        if options.hub:
+            start = f"**Open the course on {urlsplit(options.hub).netloc}**"
+            text += "\n" + markdown(lambda page: on_hub(options.hub, options.address, page), start)
+        if options.write:
+            write(text, README)
+        else:
+            print(text, end="")
+    except ValueError as error:
+        print(error, file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

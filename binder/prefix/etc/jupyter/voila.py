@@ -1,0 +1,13 @@
+"""Voilà's pages on this server look as those of `python -m ikteach lecture` do."""
+
+from ikteach.course.lecture.server import SETTINGS
+
+
+def own_mathjax(page, **_):
+    """Within another server, Voilà would fetch MathJax from a content network; None: its own."""
+    return page | {"fullMathjaxUrl": None, "mathjaxConfig": None}
+
+
+c.VoilaConfiguration.update(  # noqa: F821
+    SETTINGS["VoilaConfiguration"], template="ikteach", page_config_hook=own_mathjax
+)
