@@ -52,7 +52,7 @@ class CapPlayer(widgets.VBox):  # type: ignore[misc]
     @property
     def words(self) -> str:
         """What is seen, for those who cannot see it."""
-        return self.player.words()
+        return self.player.words
 
     def refresh(self) -> None:
         """Take one tick, and report."""

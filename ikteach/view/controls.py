@@ -114,13 +114,6 @@ class Controls:
         finally:
             self._quiet = False
 
-    def close(self) -> None:
-        """Free the widgets."""
-        buttons = self.playing, self.method, self.motion, self.reset, self.step
-        boxes = self.wounded, self.forward, self.view, self.widget
-        for widget in (*self.sliders.values(), *buttons, *boxes):
-            widget.close()
-
     def _name_button(self, change: Any) -> None:
         self.playing.description = "Pause" if change["new"] else "Play"
 

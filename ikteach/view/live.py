@@ -9,37 +9,37 @@ from typing import Any, ClassVar
 
 import ipywidgets as widgets
 
-from ikteach.motion.session import Session
 from ikteach.view.acting import Actor
-from ikteach.view.plots import portrait
+from ikteach.view.closing import close_all
 from ikteach.view.scene import Scene
 from ikteach.view.status import Status
 from ikteach.view.strips import EVERY, Strips
 
-WORDS_EVERY = 30  # ticks between two tables, and two descriptions of the picture
-
 
 class Live(widgets.VBox):  # type: ignore[misc]
-    """A session that is played: base of `player.GaitPlayer` and `workbench.Workbench`.
+    """A session that is played. Only one of a `slot` lives at a time: to run a cell again closes
+    the one that it made before.
 
-    Only one of a `slot` lives at a time: to run a cell again closes the one that it made before.
-    A subclass says how to `draw`, and what to `report` now and then.
+    session  has `tick()`, `ticks` and `dt`, and holds all state
+    strips   the curves that run along with it, if there are any
+
+    A subclass says how to `draw`, what to `report` now and then, and puts `children` in place.
     """
 
     _living: ClassVar[dict[str, "Live"]] = {}
+    REPORT_EVERY = 30  # ticks
 
-    def __init__(self, session: Session, scene: Scene, slot: str) -> None:
+    def __init__(self, session: Any, scene: Scene, slot: str, strips: Strips | None = None) -> None:
         if slot in self._living:
             self._living.pop(slot).close()
         self._living[slot] = self
         self._slot = slot
-        self.session, self.scene = session, scene
+        self.session, self.scene, self.strips = session, scene, strips
         self.playing = True
         self.status = Status()
-        self.strips = Strips(session)
         self._changes = 0
-        self._task: asyncio.Task[None] | None = None
         self._act = Actor()  # without a notebook nothing moves by itself; `session.tick()` does
+        self._task: asyncio.Task[None] | None = None
         scene.driver.on_sign = self._seen
         super().__init__()
 
@@ -51,14 +51,47 @@ class Live(widgets.VBox):  # type: ignore[misc]
         """Bring words and tables up to date."""
         raise NotImplementedError
 
+    def play_button(self) -> widgets.ToggleButton:
+        """A button that plays and pauses; for a subclass that has no other way."""
+        self._play = widgets.ToggleButton(value=True, description="Pause")
+
+        def toggled(change: Any) -> None:
+            if change["new"] != self.playing:  # by a person, and not by `say_playing`
+                self.guarded(self.play if change["new"] else self.pause)()
+
+        self._play.observe(toggled, "value")
+        return self._play
+
+    def say_playing(self, on: bool) -> None:
+        """Have the button say whether it plays."""
+        self._play.value, self._play.description = on, "Pause" if on else "Play"
+
+    def step(self) -> None:
+        """Stop the clock, and let one tick pass."""
+        self.pause()
+        self.session.tick()
+
+    @property
+    def words(self) -> str:
+        """What the picture shows, for those who cannot see it."""
+        raise NotImplementedError
+
+    @property
+    def settled(self) -> bool:
+        """Whether nothing would move any more."""
+        return False
+
     def play(self) -> None:
         """Let time pass."""
-        self.playing = True
-        self.wake()
+        self._set_playing(True)
 
     def pause(self) -> None:
         """Stop the clock; controls still act."""
-        self.playing = False
+        self._set_playing(False)
+
+    def _set_playing(self, on: bool) -> None:
+        self.playing = on
+        self.say_playing(on)
         self.wake()
 
     def close(self) -> None:
@@ -66,11 +99,8 @@ class Live(widgets.VBox):  # type: ignore[misc]
         self.stop()
         if self._living.get(self._slot) is self:
             del self._living[self._slot]
-        if getattr(self, "comm", None) is None:
-            return
         self.scene.close()
-        self.strips.close()
-        self.status.close()
+        close_all(*self.children)
         super().close()
 
     def stop(self) -> None:
@@ -81,23 +111,9 @@ class Live(widgets.VBox):  # type: ignore[misc]
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
         """The live widget, and beside it a still for places without a kernel."""
-        session = self.session
         bundle = super()._repr_mimebundle_(**kwargs)
-        still = portrait(
-            session.tree, session.effectors, session.theta[session.method], session.targets
-        )
-        return {**bundle, "image/png": still, "text/plain": self.words()}
-
-    def words(self) -> str:
-        """What the picture shows, for those who cannot see it."""
-        session = self.session
-        far = ", ".join(
-            f"{name} {100 * d:.1f} cm"
-            for name, d in zip(session.effectors.names, session.error, strict=True)
-        )
-        motion = "by hand" if session.by_hand else session.gait.name
-        wounded = "wounded, " if session.gait.wound else ""
-        return f"A human, {wounded}{motion} by {session.method}. From its target: {far}."
+        self.draw()
+        return {**bundle, "image/png": self.scene.still().png, "text/plain": self.words}
 
     # Callbacks may come on another thread: they are handed over, and the loop's thread acts.
 
@@ -138,7 +154,7 @@ class Live(widgets.VBox):  # type: ignore[misc]
         due, session = monotonic(), self.session
         try:
             self.draw()
-            while self.playing and not self.scene.driver.alone:
+            while self.playing and not (self.settled or self.scene.driver.alone):
                 due = max(due + session.dt, monotonic() - session.dt)  # late: go on, do not race
                 await asyncio.sleep(max(due - monotonic(), 0.001))
                 if not self.playing:
@@ -146,11 +162,13 @@ class Live(widgets.VBox):  # type: ignore[misc]
                 session.tick()
                 if self.scene.driver.ready:
                     self.draw()
-                if session.ticks % EVERY == 0:
+                if self.strips is not None and session.ticks % EVERY == 0:
                     self.strips.send_new()
-                if session.ticks % WORDS_EVERY == 0:
+                if session.ticks % self.REPORT_EVERY == 0:
                     self.report()
-            self.strips.send_new()
+            self.draw()
+            if self.strips is not None:
+                self.strips.send_new()
             self.report()
         except Exception as error:  # a student's own solver, most likely
             self.pause()

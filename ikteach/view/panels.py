@@ -2,7 +2,7 @@
 
 import inspect
 from collections.abc import Callable, Mapping, Sequence
-from math import degrees, log10, pi
+from math import log10, pi
 from typing import Any
 
 import ipywidgets as widgets
@@ -76,11 +76,6 @@ class Panel:
                 self.controls[name].value = value
         finally:
             self._quiet = False
-
-    def close(self) -> None:
-        """Free the widgets."""
-        for widget in (*self.controls.values(), *self.widget.children, self.widget):
-            widget.close()
 
 
 def _rounded(old: Any, new: Any) -> bool:
@@ -294,7 +289,5 @@ def target_panel(session: Session, targets: Any) -> Panel:
 
 
 def caps(which: str, equal: float) -> Mapping[str, float | None]:
-    """The cap of each method [degrees]; None where there is none."""
-    if which == OWN:
-        return {name: cap and degrees(cap) for name, cap in BUSS_CAPS.items()}
-    return dict.fromkeys(SOLVERS, equal if which == EQUAL else None)
+    """The step cap of each method [rad], where `equal` is the one of all; None is no cap."""
+    return BUSS_CAPS if which == OWN else dict.fromkeys(SOLVERS, equal if which == EQUAL else None)

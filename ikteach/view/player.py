@@ -13,7 +13,7 @@ from ikteach.study import distances
 from ikteach.view.controls import Controls
 from ikteach.view.live import Live
 from ikteach.view.scene import Scene
-from ikteach.view.strips import SECONDS
+from ikteach.view.strips import SECONDS, Strips
 
 
 class GaitPlayer(Live):
@@ -27,7 +27,8 @@ class GaitPlayer(Live):
         self, methods: Mapping[str, Solver] = SOLVERS, *, slot: str = "gait", **options: Any
     ) -> None:
         session = Session(methods=methods, **options)
-        super().__init__(session, Scene(session.tree, session.effectors), slot)
+        scene = Scene(session.tree, session.effectors)
+        super().__init__(session, scene, slot, Strips(session))
         self._table = widgets.HTML()
         self.controls = Controls(list(methods), session)
         self.controls.on_change(self.guarded(self._obey))
@@ -39,22 +40,14 @@ class GaitPlayer(Live):
         ]
         self.report()
 
-    def play(self) -> None:
-        """Let time pass."""
-        self.controls.say_playing(True)
-        super().play()
+    def say_playing(self, on: bool) -> None:
+        """Have the button say whether it plays."""
+        self.controls.say_playing(on)
 
-    def pause(self) -> None:
-        """Stop the clock; controls still act."""
-        self.controls.say_playing(False)
-        super().pause()
-
-    def close(self) -> None:
-        """Stop the loop and free all that the page and the kernel hold of it."""
-        if getattr(self, "comm", None) is not None:
-            self.controls.close()
-            self._table.close()
-        super().close()
+    @property
+    def words(self) -> str:
+        """What the picture shows, for those who cannot see it."""
+        return words(self.session)
 
     def draw(self) -> None:
         """Have the scene show what the session says."""
@@ -70,9 +63,8 @@ class GaitPlayer(Live):
     def report(self) -> None:
         """Bring words and tables up to date."""
         session = self.session
-        tracks = session.tracks(last=round(SECONDS / session.dt))
-        self.scene.driver.description = self.words()
-        self._table.value = table(tracks, session.method)
+        self.scene.driver.description = self.words
+        self._table.value = table(session, session.method)
 
     def _obey(self, name: str, value: Any) -> None:
         session = self.session
@@ -92,14 +84,25 @@ class GaitPlayer(Live):
         elif name == "reset":
             session.reset()
         elif name == "step":
-            self.pause()
-            session.tick()
+            self.step()
         else:
             session.change(**{name: value})
 
 
-def table(tracks: Mapping[str, Any], shown: str) -> str:
-    """The table of the last seconds, as HTML."""
+def words(session: Session) -> str:
+    """The shown figure in words: what it does, by which method, and how well."""
+    far = ", ".join(
+        f"{name} {100 * d:.1f} cm"
+        for name, d in zip(session.effectors.names, session.error, strict=True)
+    )
+    motion = "by hand" if session.by_hand else session.gait.name
+    wounded = "wounded, " if session.gait.wound else ""
+    return f"A human, {wounded}{motion} by {session.method}. From its target: {far}."
+
+
+def table(session: Session, shown: str | None = None) -> str:
+    """The last seconds of each method as a table, in HTML; the one that is `shown` says so."""
+    tracks = session.tracks(last=round(SECONDS / session.dt))
     if not tracks:
         return "<p>No tick yet: the table fills when the figure moves.</p>"
     frame = distances(tracks).rename(index={shown: f"{shown} (shown)"})

@@ -23,11 +23,11 @@ from ikteach.view import panels
 from ikteach.view.glass import Glass
 from ikteach.view.keeping import Keeper
 from ikteach.view.live import Live
-from ikteach.view.player import table
+from ikteach.view.player import table, words
 from ikteach.view.recorder import Recorder
 from ikteach.view.replay import Replay
 from ikteach.view.scene import Scene
-from ikteach.view.strips import SECONDS
+from ikteach.view.strips import Strips
 from ikteach.view.targets import Targets
 
 CLAMPS = {"hard": hard, "soft": soft}
@@ -59,7 +59,7 @@ class Workbench(Live):
         self._chosen = 0  # the effector whose J is drawn
         self.replay: Replay | None = None
         self._figures = panels.ONE
-        super().__init__(session, self._scene(session), slot)
+        super().__init__(session, self._scene(session), slot, Strips(session))
         self.targets = self._targets()
         self.recorder = Recorder(session, folder=folder, slot=f"{slot}.movie")
         self.glass = Glass(session, stop=self.pause, show=self.draw)
@@ -130,28 +130,34 @@ class Workbench(Live):
     def report(self) -> None:
         """Bring words and tables up to date."""
         session = self.session
-        self.scene.driver.description = self.words()
-        self._table.value = table(session.tracks(last=round(SECONDS / session.dt)), session.method)
+        self.scene.driver.description = self.words
+        self._table.value = table(session, session.method)
         if not session.by_hand:
             self.targets.follow(session.targets)
 
     # What a person can do.
 
+    @property
+    def words(self) -> str:
+        """What the picture shows, for those who cannot see it."""
+        return words(self.session)
+
     def play(self) -> None:
         """Let time pass."""
         self._back_to_now()
         self.session.note("play")
-        self.bar.put(playing=True)
-        self.bar.controls["playing"].description = "Pause"
         super().play()
 
     def pause(self) -> None:
         """Stop the clock; controls still act."""
         if self.playing:
             self.session.note("pause")
-        self.bar.put(playing=False)
-        self.bar.controls["playing"].description = "Play"
         super().pause()
+
+    def say_playing(self, on: bool) -> None:
+        """Have the button say whether it plays."""
+        self.bar.put(playing=on)
+        self.bar.controls["playing"].description = "Pause" if on else "Play"
 
     def quit(self) -> None:
         """Stop every loop, and say so. To run the cell again begins anew."""
@@ -176,12 +182,7 @@ class Workbench(Live):
 
     def close(self) -> None:
         """Stop every loop and free all that the page and the kernel hold of it."""
-        self.stop()
-        if getattr(self, "comm", None) is not None:
-            parts = (*self.panels.values(), self.bar, self.targets, self.recorder, self.keeper)
-            for part in (*parts, self.glass, self.replay, self._table, self._aside, self._drawer):
-                if part is not None:
-                    part.close()
+        self.recorder.close()
         super().close()
 
     # What a control does.
@@ -190,7 +191,7 @@ class Workbench(Live):
         session = self.session
         obeys: dict[str, Callable[[Any], None]] = {
             "playing": lambda on: self.play() if on else self.pause(),
-            "step": lambda _: self._step(),
+            "step": lambda _: self.step(),
             "undo": lambda _: self.undo(),
             "scrub": lambda _: self.scrub(),
             "live": lambda _: self._back_to_now(),
@@ -288,10 +289,7 @@ class Workbench(Live):
 
     def _bound(self) -> None:
         get = {name: one.value for name, one in self.panels["Method"].controls.items()}
-        caps = panels.caps(get["caps"], get["cap"])
-        self.session.bound(
-            {name: None if cap is None else radians(cap) for name, cap in caps.items()}
-        )
+        self.session.bound(panels.caps(get["caps"], radians(get["cap"])))
         self.session.adjust(
             cap=CAPS[get["whose"]],
             limits=LIMITS[get["limits"]],
@@ -299,7 +297,8 @@ class Workbench(Live):
             max_step=radians(get["cap"]) if get["caps"] == panels.EQUAL else None,
         )
 
-    def _step(self) -> None:
+    def step(self) -> None:
+        """Stop the clock, and let time leap once."""
         self._back_to_now()
         self.pause()
         for _ in range(self.session.gait.slowdown):

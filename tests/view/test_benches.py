@@ -117,10 +117,10 @@ def test_the_race_obeys() -> None:
     assert race.controls["speed"].value == session.gait.speed
     race.controls["speed"].value = 0.0
     session.tick()
-    race._report()
-    assert "running, each author's caps" in race._words()
+    race.report()
+    assert "running, each author's caps" in race.words
     assert "sdls" in race._table.value
-    assert race._alert.value == ""
+    assert race.status.wrong == ""
     race.close()
 
 
