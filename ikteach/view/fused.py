@@ -14,7 +14,6 @@ from matplotlib.colors import to_rgb
 
 from ikteach.view.shapes import Shape
 
-
 Runs = list[list[int]]  # [row, points], for all points of a mesh
 
 

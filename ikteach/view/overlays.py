@@ -1,6 +1,7 @@
 """The layers over the figures: made when first wanted, told arrays, moved by the driver."""
 
 from collections.abc import Callable, Iterable, Sequence
+from typing import Any
 
 import numpy as np
 import pythreejs as three
@@ -44,7 +45,7 @@ class Layer:
     def clear(self) -> None:
         """Forget what was before."""
 
-    def add(self, shapes: Iterable[shapes.Shape], colours: Sequence[str], **looks: object) -> None:
+    def add(self, shapes: Iterable[shapes.Shape], colours: Sequence[str], **looks: Any) -> None:
         """Shapes in these colours in turn, each moved by the next row."""
         pieces = [
             Piece(row, shape, colours[row % len(colours)]) for row, shape in enumerate(shapes)
@@ -69,7 +70,7 @@ class WorldAxes(Layer):
         letters = [
             letter
             for way, name, colour in ways
-            for letter in solids.labels(name, colour, 0.14 * unit, places + 0.78 * unit * way)
+            for letter in solids.labels(name, colour, 0.14 * unit, list(places + 0.78 * unit * way))
         ]
         self.root.children = [fused(pieces)[0], *letters]
 
@@ -183,9 +184,9 @@ class Reach(Layer):
     def build(self) -> None:
         """An outer and an inner surface for each chain of each figure."""
         planar, chains = self.stage.planar, len(self.stage) * len(self.stage.effectors)
-        looks: dict[str, float] = {} if planar else {"opacity": 0.45}
+        opacity = 1.0 if planar else 0.45
         self.add([shapes.ring(0.008) if planar else shapes.wires()] * 2 * chains,
-                 [PURPLE, ORANGE], **looks)  # fmt: skip
+                 [PURPLE, ORANGE], opacity=opacity)  # fmt: skip
 
     def place(self, now: Now) -> Array:
         """Outer and inner in turn; hidden where there is no such chain, or no hole."""

@@ -2,8 +2,10 @@
 
 from collections.abc import Sequence
 
+import numpy as np
 import pythreejs as three
 
+from ikteach.arrays import ArrayLike
 from ikteach.view.skin import EFFECTOR_COLOURS
 from ikteach.view.stage import SQUARE
 
@@ -52,13 +54,16 @@ def marks(names: Sequence[str], unit: float, sets: int) -> list[three.Mesh]:
 
 
 def labels(
-    text: str, colour: str, height: float, places: Sequence[Sequence[float]]
+    text: str, colour: str, height: float, places: Sequence[ArrayLike]
 ) -> list[three.Sprite]:
     """The same words at each of these places, which always face the camera."""
     words = three.TextTexture(string=text, color=colour, size=64)  # on a square as wide as it
     look = three.SpriteMaterial(map=words, transparent=True, depthWrite=False)
     width = height * max(0.55 * len(text), 1)
-    return [three.Sprite(look, position=tuple(at), scale=(width, width, 1)) for at in places]
+    return [
+        three.Sprite(look, position=tuple(np.asarray(at, dtype=float)), scale=(width, width, 1))
+        for at in places
+    ]
 
 
 def effector_colour(i: int) -> str:
