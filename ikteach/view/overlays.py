@@ -120,7 +120,8 @@ class Footprints(Layer):
         stage, names = self.stage, self.stage.effectors.names
         self._feet = feet(stage.effectors)
         self._prints = Prints((len(stage), len(self._feet)), PRINTS)
-        soles = [shapes.mark(names[i], 1.0, 16, 3) for i in self._feet for _ in range(PRINTS)]
+        size = 0.045 * stage.unit, 0.11 * stage.unit
+        soles = [shapes.sole(names[i], *size) for i in self._feet for _ in range(PRINTS)]
         colours = [effector_colour(i) for i in self._feet for _ in range(PRINTS)]
         if soles:
             self.add(soles * len(stage), colours, opacity=0.55)
@@ -129,8 +130,7 @@ class Footprints(Layer):
         """The prints, on the floor."""
         marks = self._prints.pass_through(now.effectors[:, self._feet], now.advance)
         marks[..., 1] = np.where(np.isnan(marks[..., 1]), np.nan, now.floor + 0.006)
-        sole = self.stage.unit * np.array([0.045, 0.004, 0.11])
-        return _at(marks + self.stage.places[:, None, None], sole)
+        return _at(marks + self.stage.places[:, None, None])
 
     def clear(self) -> None:
         """Forget the prints."""
@@ -163,7 +163,7 @@ class Ellipsoids(Layer):
 
     def build(self) -> None:
         """A ball of radius 1 for each figure, to be stretched, and its axes."""
-        ball, rod = shapes.globe(28, 10), shapes.rod(0.012)
+        ball, rod = shapes.globe(20, 6), shapes.rod(0.012)
         axes = [Piece(f, rod.at(sticks(-way, way)), PURPLE)
                 for f in range(len(self.stage)) for way in np.eye(3)]  # fmt: skip
         self.moves.append(fused(axes))
@@ -209,8 +209,8 @@ MAKERS: dict[str, Callable[[Stage], Layer]] = dict(
 )
 
 
-def _at(points: Array, size: Array | float = 1.0) -> Array:
-    """Upright matrices (points, 3, 4) at these points, so large; hidden where they are NaN."""
+def _at(points: Array) -> Array:
+    """Upright matrices (points, 3, 4) at these points; hidden where they are NaN."""
     flat = points.reshape(-1, 3)
-    upright = transforms(np.broadcast_to(np.eye(3) * size, (len(flat), 3, 3)), flat)
+    upright = transforms(np.broadcast_to(np.eye(3), (len(flat), 3, 3)), flat)
     return np.where(np.isnan(flat[:, :1, None]), HIDDEN, upright)

@@ -62,7 +62,7 @@ class Scene:
         self._floor = node([solids.grid(unit, dark)])
         self.targets = solids.marks(effectors.names, unit, self._sets)
         bodies = [self._body(i, i, joint + i * n) for i in range(f)]
-        rod = shapes.rod(0.006 * unit, 6)
+        rod = shapes.rod(0.006 * unit)
         gaps = fused([Piece(row, rod, GREY) for row in range(gap, self._rows)])
         self._moves: list[Move] = [
             (self._floor, floor), *zip(self.targets, range(target, gap), strict=True), *bodies, gaps

@@ -34,8 +34,10 @@ def revolved(outline: ArrayLike, around: int) -> Shape:
     points = np.stack([radius * np.cos(turn), y, radius * np.sin(turn)], axis=-1)
     a = np.arange(points[..., 0].size).reshape(y.shape)[:-1, :-1].ravel()
     b = a + around + 1
-    corners = np.concatenate([np.stack([a, a + 1, b], -1), np.stack([a + 1, b + 1, b], -1)])
-    return Shape(points.reshape(-1, 3), corners)
+    above, below = np.stack([a, a + 1, b], -1), np.stack([a + 1, b + 1, b], -1)
+    at_pole = np.repeat(np.isclose(radius[:, 0], 0, atol=1e-8), around)  # there, one is a line
+    corners = [above[~at_pole[:-around]], below[~at_pole[around:]]]
+    return Shape(points.reshape(-1, 3), np.concatenate(corners))
 
 
 @cache
@@ -50,24 +52,30 @@ def globe(around: int, half: int) -> Shape:
     return Shape(frozen(points), frozen(corners, np.intp), frozen(points))
 
 
-def rod(radius: float, around: int = 8) -> Shape:
+def rod(radius: float, around: int = 6) -> Shape:
     """A rod one metre along y from the origin."""
     return revolved([(0, 1), (radius, 1), (radius, 0), (0, 0)], around)
 
 
 def arrow(radius: float) -> Shape:
     """An arrow one metre along y from the origin."""
-    return revolved([(0, 1), (2.4 * radius, 0.78), (radius, 0.78), (radius, 0), (0, 0)], 10)
+    return revolved([(0, 1), (2.4 * radius, 0.78), (radius, 0.78), (radius, 0), (0, 0)], 7)
 
 
-def mark(name: str, radius: float, around: int = 6, half: int = 2) -> Shape:
-    """A box for a name that ends with .r, else a ball."""
+def mark(name: str, radius: float) -> Shape:
+    """A box for a name that ends with .r, else a ball, as rough as may be: eight triangles."""
     if name.endswith(".r"):
         side = 0.78 * radius
         wide = side * np.sqrt(2)
         return revolved([(0, side), (wide, side), (wide, -side), (0, -side)], 4)
-    ball = globe(around, half)
-    return Shape(radius * ball.points, ball.joined)
+    return revolved([(0, radius), (radius, 0), (0, -radius)], 4)
+
+
+def sole(name: str, wide: float, long: float) -> Shape:
+    """A flat print: a rectangle for a name that ends with .r, else an ellipse."""
+    around = 4 if name.endswith(".r") else 16
+    disc = revolved([(0, 0), (1.1 if around == 4 else 1.0, 0)], around)
+    return Shape(disc.points * [wide, 1, long], disc.joined)
 
 
 def ring(thick: float) -> Shape:
@@ -77,9 +85,9 @@ def ring(thick: float) -> Shape:
     return Shape(points[:, [0, 2, 1]] * [1, 1, -1], corners)
 
 
-def wires(circles: Sequence[float] = (-0.71, 0.0, 0.71), meridians: int = 4) -> Shape:
+def wires(circles: Sequence[float] = (-0.71, 0.0, 0.71), meridians: int = 3) -> Shape:
     """A ball of radius 1 as wires: parallels at these heights, and circles through the poles."""
-    turn = np.linspace(0, 2 * np.pi, 49)
+    turn = np.linspace(0, 2 * np.pi, 37)
     c, s, o = np.cos(turn), np.sin(turn), np.zeros_like(turn)
     rings = [np.c_[np.sqrt(1 - y * y) * c, o + y, np.sqrt(1 - y * y) * s] for y in circles]
     for a in np.arange(meridians) * np.pi / meridians:
