@@ -29,7 +29,6 @@ function parts(object, runs) {
   const { position, normal } = object.geometry.attributes;
   for (const one of [position, normal]) if (one) one.rest = one.rest ?? one.array.slice();
   return (numbers) => {
-    if (!object.visible) return;
     let from = 0;
     for (const [row, count] of runs) {
       const matrix = numbers.subarray(12 * row, 12 * row + 12), to = from + 3 * count;
@@ -39,6 +38,7 @@ function parts(object, runs) {
     }
     position.needsUpdate = true;
     if (normal) normal.needsUpdate = true;
+    object.visible = true;
   };
 }
 

@@ -56,8 +56,9 @@ def fused(
     shaded = three.MeshLambertMaterial if normals else three.MeshBasicMaterial
     material = (three.LineBasicMaterial if wires else shaded)(vertexColors="VertexColors", **looks)
     kind = three.LineSegments if wires else three.Mesh
-    # three.js would look for it where its points were at first.
-    thing = kind(shape, material, frustumCulled=False)
+    # It is not seen before the first frame has put its parts in place. Nor is it to be left out
+    # when it seems to be out of the picture: three.js would look where its points were at first.
+    thing = kind(shape, material, frustumCulled=False, visible=False)
     return thing, _runs([piece.row for piece in pieces], np.diff(firsts).tolist())
 
 

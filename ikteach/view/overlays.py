@@ -72,7 +72,9 @@ class WorldAxes(Layer):
             for way, name, colour in ways
             for letter in solids.labels(name, colour, 0.14 * unit, list(places + 0.78 * unit * way))
         ]
-        self.root.children = [fused(pieces)[0], *letters]
+        axes, _ = fused(pieces)
+        axes.visible = True
+        self.root.children = [axes, *letters]
 
 
 class JointAxes(Layer):

@@ -1,4 +1,4 @@
-"""What a long run leaves behind: no memory, no loops. `tests/bench/memory.py` is the long version."""
+"""What a long run leaves behind: no memory, no loops. `tests/bench/memory.py` is the long one."""
 
 import asyncio
 import gc
