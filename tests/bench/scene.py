@@ -80,7 +80,7 @@ window.WebSocket = class extends WebSocket {{
     super(...all);
     this.addEventListener("message", ({{ data }}) => {{
       const words = typeof data === "string" ? data : new TextDecoder().decode(data);
-      if (words.includes('"comm_msg"')) noted.messages++;
+      if (/"msg_type": ?"(\\w+)"/.exec(words)?.[1] === "comm_msg") noted.messages++;
     }});
   }}
 }};
