@@ -2,16 +2,15 @@
 
 import argparse
 import errno
-import importlib.util
 import os
 import signal
-import socket
 import subprocess
 import sys
 from pathlib import Path
 from urllib.parse import quote
 
 from ikteach.course.opening import Course, chapters, deliver, find_course, told
+from ikteach.course.ports import hindrance, port_number
 
 PACKAGE = Path(__file__).resolve().parent
 
@@ -26,6 +25,12 @@ def main(argv: list[str] | None = None) -> int:
             from ikteach.course import builds
 
             return builds.main(PACKAGE, argv[1:])
+        if argv[:1] == ["collect"]:
+            from ikteach.course import collect
+
+            return collect.main(argv[1:])
+        if argv[:1] == ["lecture"]:
+            return open_lecture(argv[1:])
         options, extra = parse(argv)
         return open_course(find_course(PACKAGE), options, extra)
     except OSError as error:
@@ -39,7 +44,9 @@ def parse(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
     parser = argparse.ArgumentParser(
         prog="python -m ikteach",
         usage="%(prog)s [FOLDER] [--no-browser] [--port N] [--list] [-- JUPYTERLAB OPTIONS]\n"
-        "       %(prog)s build student|instructor|html FOLDER",
+        "       %(prog)s build student|instructor|html FOLDER\n"
+        "       %(prog)s lecture [FOLDER]\n"
+        "       %(prog)s collect FOLDER",
         description="Open the course on inverse kinematics in JupyterLab.",
         allow_abbrev=False,
     )
@@ -58,13 +65,6 @@ def parse(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
     return options, ["--no-browser"] * options.no_browser + argv[split + 1 :]
 
 
-def port_number(text: str) -> int:
-    """A port from the command line."""
-    if not (text.isdecimal() and 1 <= int(text) <= 65535):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a port; ports are 1 to 65535")
-    return int(text)
-
-
 def open_course(course: Course, options: argparse.Namespace, extra: list[str]) -> int:
     """List the chapters or run JupyterLab on them; give the exit code."""
     titles = chapters(course.notebooks)
@@ -74,7 +74,7 @@ def open_course(course: Course, options: argparse.Namespace, extra: list[str]) -
         width = max(map(len, titles))
         print(*(f"{name:{width}}  {title}" for name, title in titles.items()), sep="\n")
         return 0
-    if reason := hindrance(options.port):
+    if reason := hindrance("JupyterLab", "jupyterlab", "lab", options.port):
         return refuse(reason)
     folder = prepare(course, options.folder)
     first = next(iter(titles))
@@ -86,21 +86,15 @@ def open_course(course: Course, options: argparse.Namespace, extra: list[str]) -
     return code
 
 
-def hindrance(port: int | None) -> str:
-    """Why JupyterLab cannot be started, in a sentence; empty if nothing is known to hinder it."""
-    if importlib.util.find_spec("jupyterlab") is None:
-        return "JupyterLab is not installed. Install it with: pip install 'ikteach[lab]'"
-    if port is None:
-        return ""
-    try:
-        socket.create_server(("127.0.0.1", port)).close()
-    except OSError as error:
-        taken = error.errno == errno.EADDRINUSE
-        reason = str(error.strerror).partition(" (")[0]  # without the address that was tried
-        problem = "is taken" if taken else f"cannot be used ({reason})"
-        other = "leave out --port to let JupyterLab find a free one, or name another."
-        return f"Port {port} {problem}; {other}"
-    return ""
+def open_lecture(argv: list[str]) -> int:
+    """Show the live figures as web pages, until Ctrl-C; give the exit code."""
+    from ikteach.course import lecture
+
+    options, extra = lecture.parse(argv)
+    if reason := hindrance("Voilà", "voila", "lecture", options.port):
+        return refuse(reason)
+    os.environ.update(lab_environment(find_course(PACKAGE)))
+    return lecture.show(options, extra)
 
 
 def prepare(course: Course, wanted: Path | None) -> Path:
@@ -131,9 +125,11 @@ def lab_command(folder: Path, first: str, port: int | None, extra: list[str]) ->
 
 def lab_environment(course: Course) -> dict[str, str]:
     """The environment of JupyterLab; from a clone, its kernels find this very package."""
-    paths = [str(PACKAGE.parent)] if course.clone else []
-    paths += filter(None, [os.environ.get("PYTHONPATH")])
-    return os.environ | ({"PYTHONPATH": os.pathsep.join(paths)} if paths else {})
+    quiet = str(PACKAGE / "course" / "lab")  # does not ask a beginner whether they want news
+    ours = {"JUPYTER_CONFIG_PATH": quiet, "PYTHONPATH": str(PACKAGE.parent) if course.clone else ""}
+    paths = {name: [path, os.environ.get(name, "")] for name, path in ours.items()}
+    joined = {name: os.pathsep.join(filter(None, both)) for name, both in paths.items()}
+    return os.environ | {name: path for name, path in joined.items() if path}
 
 
 def run(command: list[str], environment: dict[str, str]) -> int:

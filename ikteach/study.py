@@ -15,8 +15,7 @@ from ikteach.motion import Track, reachable, track
 from ikteach.motion.experiment import reversals
 from ikteach.motion.log import Log
 from ikteach.motion.packages import Body, backs_reach
-from ikteach.motion.planar import PlanarReach
-from ikteach.motion.reach import Reach, trial
+from ikteach.motion.reach import Reaching, trial
 from ikteach.motion.step import numbers
 from ikteach.motion.ways import WAYS, Way, advance
 from ikteach.solvers import SOLVERS, Solver, sdls
@@ -289,7 +288,7 @@ def measures(run: Track, member: tuple[Any, ...]) -> dict[str, float]:
     }
 
 
-def standings(session: Reach | PlanarReach) -> pd.DataFrame:
+def standings(session: Reaching) -> pd.DataFrame:
     """How each way stands with the cursor where it is now, a row a way (chapter 10).
 
     distance [cm]      from the hand to the cursor

@@ -28,6 +28,7 @@ EVERYTHING = BELOW.keys() | {"", "view", "course"}
 TOP = {"view", "course", "__main__"}
 SCREEN = {"matplotlib", "ipywidgets", "pythreejs", "anywidget", "traitlets", "IPython"}
 PAGES = {"nbformat", "nbclient", "nbconvert", "latex2mathml", "pygments"}
+SERVER = {"voila", "tornado", "jupyter_client"}
 HEAVY = ["pandas", "matplotlib", "ipywidgets", "pythreejs", "anywidget", "traitlets"]
 
 
@@ -71,7 +72,7 @@ def test_only_numpy_on_the_ground_pandas_in_study_and_screens_on_top(module):
     rooms = {
         "study": {"pandas"},
         "trials": {"pandas"},
-        "course": SCREEN | PAGES | {"pandas"},
+        "course": SCREEN | PAGES | SERVER | {"pandas"},
         "server": {"jupyter_server"},
     }
     allowed = rooms.get(here, set())

@@ -100,14 +100,7 @@ def human() -> Figure:
             *_leg("r", -1),
         ]
     )
-    ball, hand = (0, -0.0702, 0.1286), (0, -0.3612, 0)
-    points = {
-        "foot.l": ("ankle.l", ball),
-        "foot.r": ("ankle.r", ball),
-        "hand.r": ("elbow.r", hand),
-        "hand.l": ("elbow.l", hand),
-    }
-    return Figure(tree, Effectors.of(tree, points))
+    return Figure(tree, _feet_and_hands(tree))
 
 
 def heels(tree: Tree) -> Effectors:
@@ -142,14 +135,7 @@ def simulator() -> Figure:
             *_simulator_leg("r", -1),
         ]
     )
-    ball, hand = (0, -0.0702, 0.1286), (0, -0.3612, 0)
-    points = {
-        "foot.l": ("ankle.l", ball),
-        "foot.r": ("ankle.r", ball),
-        "hand.r": ("elbow.r", hand),
-        "hand.l": ("elbow.l", hand),
-    }
-    return Figure(tree, Effectors.of(tree, points))
+    return Figure(tree, _feet_and_hands(tree))
 
 
 def planar_model(links: int = 3) -> Figure:
@@ -212,6 +198,18 @@ def _leg(side: str, x: int) -> list[Joint]:
         _hinge(knee, turn, (0, -0.441, 0), X, 0, 140),
         _hinge(f"ankle.{side}", knee, (0, -0.4428, 0), (-1, 0, 0), -50, 20),
     ]
+
+
+def _feet_and_hands(tree: Tree) -> Effectors:
+    """The balls of the feet and the hands, in the order of the thesis."""
+    ball, hand = (0, -0.0702, 0.1286), (0, -0.3612, 0)
+    points = {
+        "foot.l": ("ankle.l", ball),
+        "foot.r": ("ankle.r", ball),
+        "hand.r": ("elbow.r", hand),
+        "hand.l": ("elbow.l", hand),
+    }
+    return Effectors.of(tree, points)
 
 
 def _hinge(

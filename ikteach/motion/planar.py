@@ -16,12 +16,14 @@ from ikteach.arrays import Array, ArrayLike
 from ikteach.body import forward, locate
 from ikteach.body.figures import Figure, planar_model
 from ikteach.motion.packages import NONE
-from ikteach.motion.reach import Standing, placed
+from ikteach.motion.reach import Reaching
 from ikteach.motion.reachable import reachable
 from ikteach.motion.step import clip, hold, step
 from ikteach.motion.ways import MAX_STEP, NEAR, PARTS, SINGULAR, Tick, figures_of
 from ikteach.names import unknown
 from ikteach.solvers import SOLVERS, Solver, cramer, independence
+
+ROOM = np.array([[-1.3, -1.0, 0.0], [1.3, 1.3, 0.0]])  # where a cursor can be [m]
 
 
 class Methods(dict[str, Solver]):
@@ -64,74 +66,21 @@ def _wrapped(angle: Array) -> Array:
     return (angle + np.pi) % (2 * np.pi) - np.pi
 
 
-class PlanarReach:
-    """An arm in the plane z = 0 that reaches for a cursor, by every method at once.
+class PlanarReach(Reaching):
+    """An arm in the plane z = 0; `links` is 3, 2 or 1, and Cramer's rule is for three.
 
-    links     3, 2 or 1; Cramer's rule is for three
-    It has what `motion.reach.Reach` has, and can be shown by the same widget.
+    Its ways are solvers. It can be shown by the same widget as `Reach`.
     """
 
     def __init__(
-        self,
-        links: int = 3,
-        methods: Mapping[str, Solver] = SOLVERS,
-        *,
-        method: str = "dls",
-        parts: int = PARTS,
-        max_step: float | None = MAX_STEP,
-        dt: float = 1 / 30,
+        self, links: int = 3, methods: Mapping[str, Solver] = SOLVERS, *, method: str = "dls",
+        parts: int = PARTS, max_step: float | None = MAX_STEP, dt: float = 1 / 30,
         cursor: ArrayLike = (0.5, 0.6, 0.0),
-    ) -> None:
+    ) -> None:  # fmt: skip
         self.figure = planar_model(links)
         self.tree, self.effectors = self.figure
-        self.ways = Methods({"cramer": cramer, **methods} if links == 3 else methods)
-        self.parts, self.max_step, self.dt = parts, max_step, dt
-        self.room = np.array([[-1.3, -1.0, 0.0], [1.3, 1.3, 0.0]])
-        self._start = cursor
-        self.show(method)
-        self.reset()
-
-    def show(self, method: str) -> None:
-        """Show the pose of `method`; LookupError for a name that is not among the methods."""
-        self.ways[method]
-        self.method = method
-
-    def reset(self) -> None:
-        """Back to the rest pose and to where the cursor was at first."""
-        self.ticks = 0
-        nothing = np.asarray(np.nan)
-        rest = Tick(self.tree.rest, np.asarray(0), nothing, nothing, nothing, nothing)
-        self.standing = {name: Standing(rest) for name in self.ways}
-        self.put(self._start)
-
-    def put(self, cursor: ArrayLike) -> None:
-        """Put the cursor to (3,) [m], or to the nearest place in the room; ValueError if unfit."""
-        self.cursor = placed(cursor, self.room)
-        self._aimed = "cramer" in self.ways and arrives(self.figure, self.cursor)
-        self._somehow = self._aimed or bool(reachable(*self.figure, self.cursor[None])[0])
-        for one in self.standing.values():
-            one.begin()
-
-    def move(self, by: ArrayLike) -> None:
-        """Move the cursor by (3,) [m]."""
-        self.put(self.cursor + np.asarray(by, dtype=float))
-
-    def tick(self) -> None:
-        """Let one tick of the clock pass: every method goes one step on."""
-        done = {name: self._advance(name) for name in self.ways}
-        self.ticks += 1
-        for name, tick in done.items():  # only now: a solver that fails changes nothing
-            self.standing[name].take(tick)
-
-    @property
-    def theta(self) -> Array:
-        """The pose of the shown method, (3,) [rad]."""
-        return self.standing[self.method].tick.theta
-
-    @property
-    def settled(self) -> bool:
-        """Whether nothing moves any more, by any method."""
-        return all(one.settled for one in self.standing.values())
+        ways = Methods({"cramer": cramer, **methods} if links == 3 else methods)
+        super().__init__(ways, ROOM, method, parts, max_step, dt, cursor)
 
     @property
     def within(self) -> bool:
@@ -144,6 +93,10 @@ class PlanarReach:
         if self.within:
             return "within reach of the arm"
         return "out of reach" + (" with the last link pointing outward" if self._somehow else "")
+
+    def _look(self) -> None:
+        self._aimed = "cramer" in self.ways and arrives(self.figure, self.cursor)
+        self._somehow = self._aimed or bool(reachable(*self.figure, self.cursor[None])[0])
 
     def _advance(self, name: str) -> Tick:
         theta, told = self.standing[name].tick.theta, np.full(3, np.nan)

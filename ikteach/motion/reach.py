@@ -7,12 +7,12 @@ change any more never will, and poses that come back come back for ever.
 from collections import deque
 from collections.abc import Mapping
 from math import radians
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Index, Mask
-from ikteach.body import Effectors
+from ikteach.body import Effectors, Tree
 from ikteach.motion.packages import MIDDLE, NONE, PACKAGES, Body, backs_reach, both_reach
 from ikteach.motion.step import numbers
 from ikteach.motion.ways import (
@@ -125,33 +125,30 @@ def placed(cursor: ArrayLike, room: Array) -> Array:
     return np.clip(place, *room)
 
 
-class Reach:
+class Reaching:
     """A figure that reaches for a cursor, by every way at once; one of them is shown.
 
     cursor    (3,) [m]; move it with `put` or `move`
-    ways      {name: Way}
+    ways      {name: way}
     method    the name of the one that is shown
-    parts, max_step   go to `advance`, the same for all ways
+    parts, max_step   into how many parts the error is divided; the largest step of a tick [rad]
     dt        clock time of one tick [s]
     room      (2, 3) corners of where the cursor can be [m]
     standing  {name: Standing}
+
+    A subclass says what can be reached (`_look`) and how a way goes one step on (`_advance`).
     """
 
+    tree: Tree
+    effectors: Effectors
+    neck: int | None = None  # a joint whose steps do not count: it only looks on
+
     def __init__(
-        self,
-        ways: Mapping[str, Way] = WAYS,
-        *,
-        method: str = "cramer",
-        parts: int = PARTS,
-        max_step: float | None = MAX_STEP,
-        dt: float = 1 / 30,
-        cursor: ArrayLike = START,
-    ) -> None:
-        self.body = Body()
-        self.tree = self.body.tree
-        self.ways = Ways(ways)
+        self, ways: Mapping[str, Any], room: Array, method: str, parts: int,
+        max_step: float | None, dt: float, cursor: ArrayLike,
+    ) -> None:  # fmt: skip
+        self.ways, self.room = ways, room
         self.parts, self.max_step, self.dt = parts, max_step, dt
-        self.room = ROOM
         self._start = cursor
         self.show(method)
         self.reset()
@@ -163,18 +160,16 @@ class Reach:
 
     def reset(self) -> None:
         """Back to the rest pose and to where the cursor was at first."""
-        rest = self.tree.rest
         nothing = np.asarray(np.nan)
-        tick = Tick(rest, np.asarray(NONE), nothing, nothing, nothing, nothing)
+        rest = Tick(self.tree.rest, np.asarray(NONE), nothing, nothing, nothing, nothing)
         self.ticks = 0
-        self.standing = {name: Standing(tick) for name in self.ways}
+        self.standing = {name: Standing(rest) for name in self.ways}
         self.put(self._start)
 
     def put(self, cursor: ArrayLike) -> None:
         """Put the cursor to (3,) [m], or to the nearest place in the room; ValueError if unfit."""
         self.cursor = placed(cursor, self.room)
-        self._backs = backs_reach(self.body, self.cursor)
-        self._arms = {side: bool(both_reach(self.body, side, self.cursor)) for side in "rl"}
+        self._look()
         for one in self.standing.values():
             one.begin()
 
@@ -184,21 +179,10 @@ class Reach:
 
     def tick(self) -> None:
         """Let one tick of the clock pass: every way goes one step on."""
-        done = {
-            name: advance(
-                self.body, self.standing[name].tick.theta, self.cursor, way,
-                parts=self.parts, max_step=self.max_step, backs=self._backs,
-            )
-            for name, way in self.ways.items()
-        }  # fmt: skip
+        done = {name: self._advance(name) for name in self.ways}
         self.ticks += 1
         for name, tick in done.items():  # only now: a solver that fails changes nothing
-            self.standing[name].take(tick, self.body.neck)
-
-    @property
-    def effectors(self) -> Effectors:
-        """The hand on the cursor's side."""
-        return self.body.hands[self.side]
+            self.standing[name].take(tick, self.neck)
 
     @property
     def theta(self) -> Array:
@@ -206,14 +190,49 @@ class Reach:
         return self.standing[self.method].tick.theta
 
     @property
-    def side(self) -> str:
-        """The side whose hand is nearer to the cursor's: "r" or "l"."""
-        return "r" if self.cursor[0] < 0 else "l"
-
-    @property
     def settled(self) -> bool:
         """Whether nothing moves any more, by any method."""
         return all(one.settled for one in self.standing.values())
+
+    @property
+    def within(self) -> bool:
+        """Whether the shown method has something that reaches the cursor: white, else red."""
+        raise NotImplementedError
+
+    @property
+    def words(self) -> str:
+        """What white or red means here, in words."""
+        raise NotImplementedError
+
+    def _look(self) -> None:
+        """Find out what can reach the cursor where it is now."""
+        raise NotImplementedError
+
+    def _advance(self, name: str) -> Tick:
+        """One step of a way, which changes nothing yet."""
+        raise NotImplementedError
+
+
+class Reach(Reaching):
+    """The figure of CS 490, which reaches with the hand on the cursor's side; `ways` are `Way`s."""
+
+    def __init__(
+        self, ways: Mapping[str, Way] = WAYS, *, method: str = "cramer", parts: int = PARTS,
+        max_step: float | None = MAX_STEP, dt: float = 1 / 30, cursor: ArrayLike = START,
+    ) -> None:  # fmt: skip
+        self.body = Body()
+        self.tree, self.neck = self.body.tree, self.body.neck
+        super().__init__(Ways(ways), ROOM, method, parts, max_step, dt, cursor)
+
+    @property
+    def effectors(self) -> Effectors:  # type: ignore[override]
+        """The hand on the cursor's side."""
+        return self.body.hands[self.side]
+
+    @property
+    def side(self) -> str:
+        """The side whose hand is nearer to the cursor's: "r" or "l"."""
+        return "r" if self.cursor[0] < 0 else "l"
 
     @property
     def within(self) -> bool:
@@ -234,6 +253,16 @@ class Reach:
         if abs(self.cursor[0]) <= MIDDLE:
             return "in the middle, where no package answers"
         return "out of reach of every package"
+
+    def _look(self) -> None:
+        self._backs = backs_reach(self.body, self.cursor)
+        self._arms = {side: bool(both_reach(self.body, side, self.cursor)) for side in "rl"}
+
+    def _advance(self, name: str) -> Tick:
+        return advance(
+            self.body, self.standing[name].tick.theta, self.cursor, self.ways[name],
+            parts=self.parts, max_step=self.max_step, backs=self._backs,
+        )  # fmt: skip
 
     def _package(self, way: Way) -> int:
         theta = self.standing[self.method].tick.theta

@@ -4,6 +4,11 @@ import asyncio
 from collections.abc import Callable
 
 
+def in_words(error: Exception) -> str:
+    """What went wrong, as the person is told."""
+    return f"That did not work: {error or type(error).__name__}"
+
+
 class Actor:
     """Has things done by the loop in which it was made.
 
@@ -28,7 +33,7 @@ class Actor:
             except Exception as error:
                 if fail is None:
                     raise
-                fail(f"That did not work: {error}.")
+                fail(in_words(error))
 
         if self.loop is None or self.loop.is_closed():
             act()

@@ -1,8 +1,5 @@
 """A bench: sliders and buttons over a picture that answers them, for chapters 3, 5 and 6."""
 
-import asyncio
-import html
-import traceback
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar, NamedTuple
 
@@ -12,8 +9,10 @@ from matplotlib.artist import Artist
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from ikteach.view.acting import Actor, in_words
 from ikteach.view.picture import Picture
 from ikteach.view.plots import as_png
+from ikteach.view.status import Status
 
 WIDE = {"description_width": "190px"}
 
@@ -69,8 +68,9 @@ class Bench(widgets.VBox):  # type: ignore[misc]
         self.controls = dict(controls)
         self._show, self._slot, self._stale = show, slot, False
         self._waiting: list[Callable[[], None]] = []
-        self._loop = running_loop()
-        self._picture, self._below, self._alert = Picture(), widgets.HTML(), widgets.HTML()
+        self._act = Actor()
+        self.status = Status()
+        self._picture, self._below = Picture(), widgets.HTML()
         self.buttons = {label: widgets.Button(description=label) for label in buttons or {}}
         for label, act in (buttons or {}).items():
             self.buttons[label].on_click(lambda _, act=act: self._after(act))
@@ -79,7 +79,7 @@ class Bench(widgets.VBox):  # type: ignore[misc]
         rows = [*self.controls.values()]
         if self.buttons:
             rows.append(widgets.HBox(list(self.buttons.values())))
-        super().__init__([*rows, self._alert, self._picture, self._below])
+        super().__init__([*rows, self.status, self._picture, self._below])
         self._living[slot] = self
         self.refresh()
 
@@ -101,9 +101,9 @@ class Bench(widgets.VBox):  # type: ignore[misc]
                 act()
             png, words, below = self._show(**self.values)
         except Exception as error:
-            self._alert.value = alert(error)
+            self.status.wrong = in_words(error)
             return
-        self._alert.value = ""
+        self.status.wrong = ""
         self._picture.png, self._picture.alt, self._below.value = png, words, below
 
     def close(self) -> None:
@@ -113,7 +113,7 @@ class Bench(widgets.VBox):  # type: ignore[misc]
         if getattr(self, "comm", None) is None:
             return
         parts = [*self.controls.values(), *self.buttons.values()]
-        for widget in (*parts, self._picture, self._below, self._alert):
+        for widget in (*parts, self._picture, self._below, self.status):
             widget.close()
         super().close()
 
@@ -122,10 +122,7 @@ class Bench(widgets.VBox):  # type: ignore[misc]
         if act is not None:
             self._waiting.append(act)
         self._stale = True
-        if self._loop is None or self._loop.is_closed():
-            self.refresh()
-        else:
-            self._loop.call_soon_threadsafe(self._catch_up)
+        self._act(self._catch_up)
 
     def _catch_up(self) -> None:
         if self._stale:  # of several moves at once, the last one is drawn
@@ -160,21 +157,3 @@ def choice(label: str, options: list[str], value: str | None = None) -> Any:
     return widgets.ToggleButtons(
         options=options, value=value or options[0], description=label, style=style
     )
-
-
-def alert(error: Exception) -> str:
-    """What went wrong, for a person: the sentence, and folded away where it was."""
-    where = "".join(traceback.format_exception(error)[-2:])
-    return (
-        f'<div role="alert" style="border-left:4px solid #d55e00;padding:4px 10px">'
-        f"<b>That did not work.</b> {html.escape(str(error))}"
-        f"<details><summary>where</summary><pre>{html.escape(where)}</pre></details></div>"
-    )
-
-
-def running_loop() -> asyncio.AbstractEventLoop | None:
-    """The kernel's loop, or none outside a notebook."""
-    try:
-        return asyncio.get_running_loop()
-    except RuntimeError:
-        return None

@@ -2,8 +2,8 @@
 //
 // One binary message is one frame: rows of 12 float32, the columns x, y, z and position of a
 // matrix. A row moves an object as a whole, or some of the points of a mesh of many parts. The
-// browser says which frames it has drawn, so that the kernel never sends far ahead; of what comes
-// faster than it can be drawn, the newest is kept and the rest dropped.
+// browser says which frames it has drawn, so that the kernel never sends far ahead; what comes
+// faster than it can be drawn is overwritten by what is newer.
 
 const REPORT_EVERY = 15; // frames; each report makes the kernel busy and idle, and the page says so
 
@@ -70,8 +70,7 @@ async function render({ model, el }) {
   const scene = renderer.get("scene");
   let movers = [], rows = -1; // what to move, and how many rows a frame for it has
   let gathering = 0;
-  let waiting = null; // the newest frame that came while one was being drawn
-  let drawing = null; // the frame that is in the scene and not yet on the screen
+  let newest = null; // the frame that is in the scene and not yet on the screen
   let reported = -1; // number of the newest frame that the kernel has been told of
   let shown = 0;
 
@@ -86,28 +85,22 @@ async function render({ model, el }) {
 
   function receive(content, buffers) {
     if (content.frame === undefined || buffers[0].byteLength !== 48 * rows) return;
-    waiting = { ...content, view: buffers[0] };
-    if (!drawing) next();
-  }
-
-  function next() {
-    [drawing, waiting] = [waiting, null];
-    if (!drawing) return;
-    const { buffer, byteOffset, byteLength } = drawing.view;
+    const { buffer, byteOffset, byteLength } = buffers[0];
     const numbers = new Float32Array(buffer, byteOffset, byteLength / 4);
     for (const move of movers) move(numbers);
+    newest = content;
     renderer.trigger("rerender", renderer, {});
   }
 
   function drawn() {
-    if (!drawing) return;
-    const { frame, change } = drawing;
+    if (!newest) return;
+    const { frame, change } = newest;
+    newest = null;
     Object.assign(status.dataset, { frame, change, shown: ++shown });
     if (frame - reported >= REPORT_EVERY) {
       reported = frame;
       model.send({ drawn: frame });
     }
-    next();
   }
 
   function describe() {

@@ -8,6 +8,7 @@ import pythreejs as three
 import traitlets
 from ipywidgets import Widget, widget_serialization
 
+from ikteach.view.acting import in_words
 from ikteach.view.closing import close_all
 from ikteach.view.positions import Positions
 from ikteach.view.scene import Scene
@@ -85,7 +86,7 @@ class Handles(anywidget.AnyWidget):
                 self.positions.drag(int(content["target"]), content["at"], again=again)
             self.alert = ""
         except Exception as error:  # of whoever follows the targets
-            self.alert = f"That did not work: {error}"
+            self.alert = in_words(error)
         finally:
             if "number" in content:
                 self.send({"heard": content["number"]})

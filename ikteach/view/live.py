@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import ipywidgets as widgets
 
-from ikteach.view.acting import Actor
+from ikteach.view.acting import Actor, in_words
 from ikteach.view.closing import close_all
 from ikteach.view.scene import Scene
 from ikteach.view.status import Status
@@ -134,7 +134,7 @@ class Live(widgets.VBox):  # type: ignore[misc]
 
     def tell(self, error: Exception) -> None:
         """Say what went wrong where the person looks."""
-        self.status.wrong = f"That did not work: {error or type(error).__name__}"
+        self.status.wrong = in_words(error)
 
     def wake(self) -> None:
         """See to it that the loop runs if there is something to do; from any thread."""

@@ -41,7 +41,7 @@ class SceneBench(Bench):
         scene.widget.layout.width = f"{scene.renderer.width}px"  # so that the panel has its place
         beside = widgets.HBox([scene.widget, column], layout=widgets.Layout(flex_flow="row wrap"))
         chart = [self._picture] if self._picture.png else []
-        self.children = [beside, self._alert, *chart, self._below]
+        self.children = [beside, self.status, *chart, self._below]
         scene.driver.on_sign = self._seen
 
     def refresh(self) -> None:

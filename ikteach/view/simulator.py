@@ -12,8 +12,7 @@ import pandas as pd
 
 from ikteach.arrays import Array
 from ikteach.body import Effectors
-from ikteach.motion.planar import PlanarReach
-from ikteach.motion.reach import Reach
+from ikteach.motion.reach import Reach, Reaching
 from ikteach.study import standings
 from ikteach.view import solids
 from ikteach.view.bench import choice, slider
@@ -29,7 +28,7 @@ WHITE = "#ffffff"
 class CursorScene(Scene):
     """A scene with one target, the cursor: white with a word over it, or red with another."""
 
-    def __init__(self, session: Reach | PlanarReach, **options: Any) -> None:
+    def __init__(self, session: Reaching, **options: Any) -> None:
         super().__init__(session.tree, _cursor(session), dark=True, **options)
         unit = self.stage.unit
         self._words = [
@@ -41,7 +40,7 @@ class CursorScene(Scene):
         self._ball.children = self._words
         self._within: bool | None = None
 
-    def point(self, session: Reach | PlanarReach, change: int) -> None:
+    def point(self, session: Reaching, change: int) -> None:
         """Draw the session: the pose, the cursor, and the rod from the hand that reaches for it."""
         self.effectors = self.stage.effectors = _cursor(session)
         if session.within != self._within:  # few messages: only when the colour changes
@@ -52,7 +51,7 @@ class CursorScene(Scene):
         self.show(session.theta, session.cursor[None], change=change)
 
 
-def _cursor(session: Reach | PlanarReach) -> Effectors:
+def _cursor(session: Reaching) -> Effectors:
     """The hand that reaches, under the name that its target is to have."""
     return replace(session.effectors, names=("cursor",))
 
@@ -69,7 +68,7 @@ class Simulator(Live):
     scene: CursorScene
 
     def __init__(
-        self, session: Reach | PlanarReach | None = None, *, slot: str = "reach", **options: Any
+        self, session: Reaching | None = None, *, slot: str = "reach", **options: Any
     ) -> None:
         session = session if session is not None else Reach(**options)
         super().__init__(session, CursorScene(session), slot)
@@ -184,7 +183,7 @@ def _narrow(label: str, value: float, low: float, high: float, step: float) -> A
     return made
 
 
-def _table(session: Reach | PlanarReach) -> str:
+def _table(session: Reaching) -> str:
     table = standings(session).rename(index={session.method: f"{session.method} (shown)"})
     table["ticks"] = ["–" if pd.isna(ticks) else ticks for ticks in table["ticks"]]
     return table.to_html(

@@ -53,15 +53,7 @@ def human_skin() -> list[Part]:
         Ball("spine.twist", (0, 0.555, 0.112), (0.014, 0.02, 0.02), SKIN),
     ]
     for side in "lr":
-        parts += [
-            Limb(f"shoulder.turn.{side}", (0, 0, 0), (0, -0.3348, 0), 0.052, 0.042, SHIRT),
-            Limb(f"elbow.{side}", (0, 0, 0), (0, -0.27, 0), 0.04, 0.03, SKIN),
-            Ball(f"elbow.{side}", (0, -0.335, 0), (0.022, 0.075, 0.042), SKIN),
-            Limb(f"hip.turn.{side}", (0, 0, 0), (0, -0.441, 0), 0.083, 0.058, TROUSERS),
-            Limb(f"knee.{side}", (0, 0, 0), (0, -0.4428, 0), 0.056, 0.04, TROUSERS),
-            Limb(f"ankle.{side}", (0, -0.045, -0.05), (0, -0.05, 0.13), 0.035, 0.028, SHOES),
-            Ball(f"ankle.{side}", (0, -0.05, 0.15), (0.042, 0.026, 0.05), SHOES),
-        ]
+        parts += _limbs(side, "shoulder.turn", "hip.turn")
     return parts
 
 
@@ -80,16 +72,21 @@ def simulator_skin() -> list[Part]:
         Ball("neck", (-0.04, 0.15, 0.101), (0.012, 0.012, 0.012), HAIR),
     ]
     for side in "lr":
-        parts += [
-            Limb(f"shoulder.x.{side}", (0, 0, 0), (0, -0.3348, 0), 0.052, 0.042, SHIRT),
-            Limb(f"elbow.{side}", (0, 0, 0), (0, -0.27, 0), 0.04, 0.03, SKIN),
-            Ball(f"elbow.{side}", (0, -0.335, 0), (0.022, 0.075, 0.042), SKIN),
-            Limb(f"hip.z.{side}", (0, 0, 0), (0, -0.441, 0), 0.083, 0.058, TROUSERS),
-            Limb(f"knee.{side}", (0, 0, 0), (0, -0.4428, 0), 0.056, 0.04, TROUSERS),
-            Limb(f"ankle.{side}", (0, -0.045, -0.05), (0, -0.05, 0.13), 0.035, 0.028, SHOES),
-            Ball(f"ankle.{side}", (0, -0.05, 0.15), (0.042, 0.026, 0.05), SHOES),
-        ]
+        parts += _limbs(side, "shoulder.x", "hip.z")
     return parts
+
+
+def _limbs(side: str, shoulder: str, hip: str) -> list[Part]:
+    """The arm and the leg of a side, below the hinges with these names."""
+    return [
+        Limb(f"{shoulder}.{side}", (0, 0, 0), (0, -0.3348, 0), 0.052, 0.042, SHIRT),
+        Limb(f"elbow.{side}", (0, 0, 0), (0, -0.27, 0), 0.04, 0.03, SKIN),
+        Ball(f"elbow.{side}", (0, -0.335, 0), (0.022, 0.075, 0.042), SKIN),
+        Limb(f"{hip}.{side}", (0, 0, 0), (0, -0.441, 0), 0.083, 0.058, TROUSERS),
+        Limb(f"knee.{side}", (0, 0, 0), (0, -0.4428, 0), 0.056, 0.04, TROUSERS),
+        Limb(f"ankle.{side}", (0, -0.045, -0.05), (0, -0.05, 0.13), 0.035, 0.028, SHOES),
+        Ball(f"ankle.{side}", (0, -0.05, 0.15), (0.042, 0.026, 0.05), SHOES),
+    ]
 
 
 def stick_skin(tree: Tree, effectors: Effectors, thick: float = 0.03) -> list[Part]:

@@ -9,6 +9,7 @@ import numpy as np
 import traitlets
 
 from ikteach.arrays import Array, ArrayLike
+from ikteach.view.acting import in_words
 from ikteach.view.handles import Handles
 from ikteach.view.positions import Positions
 from ikteach.view.scene import Scene
@@ -104,7 +105,7 @@ class Targets(anywidget.AnyWidget):
             elif "target" in content:
                 self._set(content)
         except Exception as error:  # of whoever follows the targets
-            self.alert = f"That did not work: {error}"
+            self.alert = in_words(error)
         finally:
             if "number" in content:
                 self.send({"heard": content["number"]})

@@ -180,6 +180,12 @@ class Workbench(Live):
         """Stop the clock, and look through what was."""
         self._look_at(self.session.log())
 
+    def keep_no_files(self) -> None:
+        """Take the panel Recording away, for good: for a page that others operate."""
+        self._drawer.children = self._drawer.children[:-1]
+        self.recorder.close()
+        self.keeper.close()
+
     def close(self) -> None:
         """Stop every loop and free all that the page and the kernel hold of it."""
         self.recorder.close()

@@ -52,6 +52,7 @@ class Lab:
         environment = os.environ | {
             "OPENBLAS_NUM_THREADS": "1",
             "JUPYTER_CONFIG_DIR": str(folder / ".config"),
+            "JUPYTER_CONFIG_PATH": str(ROOT / "ikteach" / "course" / "lab"),
             "JUPYTERLAB_SETTINGS_DIR": str(folder / ".settings"),
             "JUPYTERLAB_WORKSPACES_DIR": str(folder / ".workspaces"),
         }

@@ -2,7 +2,7 @@
 
 A chapter is a row of `CHAPTERS`: the notebook, words of the cell that makes the figure, the
 expression that gives it in the kernel, and where its picture is. The figure has `controls`
-{name: widget} and says what went wrong in `status` or `_alert`.
+{name: widget} and says what went wrong in `status.wrong`.
 """
 
 import io
@@ -51,13 +51,11 @@ def to_the_ends(figure):
         for end in ends(control):
             control.value = end
             figure.refresh()
-            wrong.append(wrong_with(figure))
+            wrong.append(figure.status.wrong)
             words.append(figure.words)
         control.value = was
     return [[one for one in wrong if one], len(words), min(map(len, words))]
 
-def wrong_with(figure):
-    return figure.status.wrong if hasattr(figure, "status") else figure._alert.value
 
 def ends(control):
     "The values at the ends of a slider, or all that there are to choose from."
@@ -91,7 +89,7 @@ def test_every_slider_to_both_ends(open_notebook: Any, chapter: Chapter) -> None
         wait_for_picture(notebook, chapter)
         notebook.shot(f"{chapter.notebook[:2]}_end_{which}")
     by_keys(notebook, figure)
-    assert notebook.kernel(f"wrong_with({figure})") == ""
+    assert notebook.kernel(f"{figure}.status.wrong") == ""
     assert notebook.errors == []
 
 

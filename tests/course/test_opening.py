@@ -5,6 +5,7 @@ import importlib.metadata
 import importlib.util
 import json
 import os
+import re
 import shutil
 import signal
 import socket
@@ -580,6 +581,8 @@ def test_wheel_carries_every_notebook(wheel: Path) -> None:
     expected = chapters(wheel.parent / "notebooks")
     assert {f"ikteach/notebooks/{name}" for name in expected} <= set(names)
     assert "ikteach/course/checking.py" in names
+    for name in ("pages/workbench.ipynb", "look/index.html.j2"):
+        assert f"ikteach/course/lecture/{name}" in names
     assert not any("/solutions/" in name for name in names)
 
 
@@ -677,6 +680,8 @@ def test_jupyterlab_serves_the_first_chapter_and_stops_on_ctrl_c(
     address, page = server.get("/")
     assert address.endswith(f"/lab/tree/{first}")
     assert b'"news": {"disabled": true}' in page
+    (off,) = re.findall(rb'"disabledExtensions": \[(.*?)\]', page)
+    assert b"apputils-extension:announcements" in off  # which asks whether news are wanted
     assert json.loads(server.get("/lab/api/update")[1]) == {"notification": None}
     served = json.loads(server.get(f"/api/contents/{first}?format=text&type=file")[1])
     assert served["content"] == (tmp_path / "course" / first).read_text("utf-8")

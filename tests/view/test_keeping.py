@@ -49,7 +49,7 @@ def test_what_goes_wrong_is_said(session, tmp_path):
     before = (tmp_path / "session.csv").read_bytes()
     session.tick()
     keeper.saving.click()
-    assert "already; tick the box to replace it." in keeper.status.wrong
+    assert "already; tick the box to replace it" in keeper.status.wrong
     assert (tmp_path / "session.csv").read_bytes() == before
     keeper.replace.value = True
     keeper.saving.click()

@@ -34,12 +34,12 @@ def test_every_slider_goes_to_both_ends(name):
         if not hasattr(control, "min"):
             for option in control.options:
                 control.value = option
-                assert bench._alert.value == ""
+                assert bench.status.wrong == ""
             continue
         was = control.value
         for end in ends(control):
             control.value = end
-            assert bench._alert.value == ""
+            assert bench.status.wrong == ""
             assert len(bench.words) > 40
         control.value = was
     bundle = bench._repr_mimebundle_()

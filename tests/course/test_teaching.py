@@ -1,0 +1,193 @@
+"""What TEACHING.md promises of each chapter's demo, done with the controls that it names."""
+
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from ikteach import figures, gait, study
+from ikteach.course.collect import collect
+from ikteach.course.record import store
+from ikteach.study import distances
+from ikteach.view import BendBench, ColumnPoser, GaitPlayer, Poser, Simulator, Workbench
+from ikteach.view.caps import CapPlayer
+from ikteach.view.race import EQUAL, OWN, Race
+from ikteach.view.slope import slope_bench
+from ikteach.view.spectrum import spectrum_bench
+from ikteach.view.tradeoff import tradeoff_bench
+
+TEXT = (Path(__file__).parents[2] / "TEACHING.md").read_text(encoding="utf-8")
+
+
+def put(bench: Any, **values: Any) -> str:
+    """Move controls; what the figure says then."""
+    for name, value in values.items():
+        bench.controls[name].value = value
+    return str(bench.words)
+
+
+def number(pattern: str, words: str) -> float:
+    found = re.search(pattern + r" ?(-?[\d.e-]+\d)", words)
+    assert found, f"no {pattern} in {words}"
+    return float(found[1])
+
+
+def standing(session: Any, ticks: int = 150) -> pd.DataFrame:
+    """The table under a figure that has run for so many ticks, of the last two thirds."""
+    for _ in range(ticks):
+        session.tick()
+    return distances(session.tracks(last=2 * ticks // 3))
+
+
+def test_there_is_a_row_for_each_chapter() -> None:
+    assert re.findall(r"^\| (\d+) \|", TEXT, re.MULTILINE) == [str(n) for n in range(11)]
+
+
+def test_what_students_are_told_to_write_is_collected(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    store("quiz", "03.stuck", answer="It stands still", right=True, tries=1)
+    walk = gait.walking(gait.walking.clock(3))
+    names = {"study": study, "table": study.compare(*figures.human(), walk)}
+    exec(re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)[0], names)
+    table, logs, skipped = collect(tmp_path)
+    assert skipped == {}
+    assert {"ada", "predictions"} == set(table["student"])
+    assert {"method", "effector", "jitter"} <= set(logs.columns)
+
+
+def test_0_a_turn_of_a_straight_arm_moves_nothing() -> None:
+    poser = Poser(figures.human())
+
+    def hand() -> np.ndarray:
+        said = re.sub("<[^>]+>", " ", poser._below.value).split("hand.l")[1]
+        return np.array(said.split()[:3], dtype=float)
+
+    rest = hand()
+    put(poser, **{"shoulder.turn.l": 60})
+    assert np.linalg.norm(hand() - rest) == 0
+    put(poser, **{"shoulder.turn.l": 0, "elbow.l": 90})
+    bent = hand()
+    put(poser, **{"shoulder.turn.l": 60})
+    assert np.linalg.norm(hand() - bent) == pytest.approx(0.36, abs=0.005)
+
+
+def test_1_an_arrow_appears() -> None:
+    poser = ColumnPoser(figures.human())
+    words = put(poser, effector="hand.l")
+    assert words.startswith("5 of 20")
+    assert "shoulder.turn.l" not in words
+    words = put(poser, **{"elbow.l": 90})
+    assert words.startswith("6 of 20")
+    assert "shoulder.turn.l" in words
+    assert "spine" not in put(poser, effector="foot.l")
+
+
+def test_2_none_moves_and_then_one_moves_too_much() -> None:
+    bench = BendBench()
+
+    def steps(bend: int) -> dict[str, float]:
+        told = put(bench, bend=bend, way=180).partition("Steps:")[2]
+        found = re.findall(r"(\w+) ([\d.e-]+) rad", told)
+        return {name: math.degrees(float(length)) for name, length in found}
+
+    assert max(steps(0).values()) < 1e-9
+    near = steps(5)
+    assert near.pop("pseudoinverse") == pytest.approx(147, abs=1)
+    assert max(near.values()) < 20
+    assert steps(1)["pseudoinverse"] < 0.1
+
+
+def test_3_on_this_arm_the_half_step_is_slower() -> None:
+    bench, left = slope_bench(), {}
+    for gain in (1.0, 0.5):
+        bench.buttons["Start again"].click()
+        put(bench, gain=gain)
+        for _ in range(12):
+            bench.buttons["Take the step"].click()
+        left[gain] = number("Distance now", bench.words)
+    assert left[1.0] < 0.001
+    assert left[0.5] == pytest.approx(0.10, abs=0.01)
+
+
+def test_4_one_cap_for_all_costs_the_feet() -> None:
+    table = standing(CapPlayer().player.session)
+    feet = table[["foot.l", "foot.r"]].max(axis=1)
+    assert feet["whole step"] == pytest.approx(13, abs=1.5)
+    assert feet[["each chain", "no cap"]].max() < 1
+    assert table["jitter"]["no cap"] > 10 * table["jitter"]["each chain"]
+
+
+def test_5_lambda_trades_and_has_a_unit() -> None:
+    bench = tradeoff_bench()
+    said = [put(bench, damping=d, unit="metres") for d in (0.001, 0.01, 0.1, 1, 10)]
+    near, calm = ([number(w, s) for s in said] for w in ("distance to target", "m, jitter"))
+    assert calm == sorted(calm, reverse=True)
+    assert near[0] > near[1] > near[2] < near[3] < near[4]
+    words = put(bench, damping=0.1, unit="centimetres")
+    assert number("m, jitter", words) == pytest.approx(calm[0], abs=1e-3)
+
+
+def test_6_the_weakest_direction_is_cut() -> None:
+    bench = spectrum_bench()
+    words = put(bench, steps=5, direction=12)
+    assert number("1/σ is", words) == pytest.approx(45, abs=1)
+    assert number("damped", words) == pytest.approx(2.1, abs=0.1)
+    assert number("SDLS takes", words) < 0.1
+    words = put(bench, direction=1)
+    three = [number(name, words) for name in ("1/σ is", "damped", "SDLS takes")]
+    assert max(three) - min(three) < 0.01
+
+
+def test_7_hands_never_arrive_and_one_method_shakes() -> None:
+    table = standing(GaitPlayer().session)
+    assert table.loc["dls", ["hand.l", "hand.r"]].to_list() == pytest.approx([22, 22], abs=1)
+    assert table["jitter"]["pseudoinverse"] > 10 * table["jitter"]["dls"]
+
+
+def test_8_the_cap_makes_the_verdict() -> None:
+    race, jitter = Race(), {}
+    for caps, degrees in ((EQUAL, 30), (EQUAL, 2), (OWN, 2)):
+        put(race, caps=caps, degrees=degrees)
+        race.refresh()
+        table = standing(race.session)
+        jitter[caps, degrees] = table["jitter"]["pseudoinverse"]
+        if degrees == 2 and caps == EQUAL:
+            assert table.loc["dls", "foot.l"] == pytest.approx(4.4, abs=0.5)
+    assert jitter[EQUAL, 30] > 50
+    assert jitter[EQUAL, 2] < 5
+    assert 8 < jitter[OWN, 2] < 20
+
+
+def test_9_the_feet_follow_later_and_the_hands_as_before() -> None:
+    bench = Workbench()
+    slow = standing(bench.session).loc["dls"]
+    bench._control("speed").value = 8.4
+    fast = standing(bench.session).loc["dls"]
+    assert (slow["foot.l"], fast["foot.l"]) == pytest.approx((0.22, 0.33), abs=0.06)
+    assert fast["hand.l"] == pytest.approx(slow["hand.l"], abs=1)
+    bench.close()
+
+
+def test_10_the_hand_never_comes_to_rest_unless_mended() -> None:
+    simulator = Simulator()
+    session = simulator.session
+
+    def after(*place: float) -> pd.Series:
+        session.put(np.array(place))
+        for _ in range(120):
+            session.tick()
+        return pd.Series({name: one.words for name, one in session.standing.items()})
+
+    low = after(0.4, -0.2, 0.3)
+    assert "oscillates" in low["cramer"]
+    assert "repeat every 9 ticks" in low["cramer"]
+    assert low["cramer, mended"].startswith("arrived")
+    middle = after(0.0, 0.25, 0.35)
+    assert "does not answer" in middle["cramer"]
+    assert middle["dls"].startswith("arrived")
