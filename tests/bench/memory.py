@@ -28,17 +28,20 @@ import asyncio, gc, threading
 from pathlib import Path
 from time import monotonic
 import psutil
+from ipywidgets.widgets.widget import _instances
 from ikteach.view import live, workbench
 def loops():
     tasks = asyncio.all_tasks(bench._act.loop)
     return sum("Live._run" in task.get_coro().__qualname__ for task in tasks)
+def left():
+    more = threading.active_count() - threads
+    return f"{loops()} loops, {more} threads more, {len(_instances)} widgets"
 def memory():
     gc.collect()
     return [bench.session.ticks, psutil.Process().memory_info().rss / 1e6]
 async def watch():
     while True:
-        words = f"{loops()} loops, {threading.active_count() - threads} threads more"
-        Path("left.txt").write_text(words)
+        Path("left.txt").write_text(left())
         await asyncio.sleep(0.5)
 threads = threading.active_count()
 watching = asyncio.ensure_future(watch())
@@ -84,8 +87,7 @@ def run_cell(notebook: Notebook) -> None:
 def left(notebook: Notebook, when: str) -> None:
     """Print what runs in the kernel."""
     notebook.page.wait_for_timeout(3000)
-    words = "f'{loops()} loops, {threading.active_count() - threads} threads more'"
-    print(f"{when}: {notebook.kernel(words)}")
+    print(f"{when}: {notebook.kernel('left()')}")
 
 
 def grow(notebook: Notebook, ticks: int) -> None:
