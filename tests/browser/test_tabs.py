@@ -27,10 +27,12 @@ watching = asyncio.ensure_future(watch())
 
 @pytest.fixture(scope="module")
 def first(open_notebook: Any) -> Iterator[Notebook]:
-    """A page in which the workbench plays, in a notebook that has been saved with it."""
+    """A page in which the workbench has played, in a notebook that has been saved with it."""
     notebook = open_notebook(NAME)
     notebook.run_cell("bench = Workbench()")
     notebook.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
+    press(notebook, "Pause")  # the second page has enough to do
+    settle(notebook, "bench._task.done()", True)
     notebook.command("docmanager:save")
     yield notebook
     assert notebook.errors == []
@@ -38,10 +40,10 @@ def first(open_notebook: Any) -> Iterator[Notebook]:
 
 @pytest.fixture(scope="module")
 def second(first: Notebook, lab: Lab, browser: Browser) -> Iterator[Notebook]:
-    """Another page with the same notebook, on the same kernel: it shows what the first one made."""
+    """Another page with the same notebook, on the same kernel: it shows the pose without a cell."""
     context = browser.new_context(viewport={"width": 1440, "height": 1100})
     notebook = Notebook(context.new_page(), lab, NAME)
-    notebook.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
+    notebook.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=2 * READY)
     yield notebook
     context.close()
     assert notebook.errors == []
@@ -49,11 +51,12 @@ def second(first: Notebook, lab: Lab, browser: Browser) -> Iterator[Notebook]:
 
 def test_two_tabs_show_the_same(first: Notebook, second: Notebook) -> None:
     assert len(first.lab.ask("kernels")) == 1
+    press(second, "Play")
     for page in first, second:
         frames(page, 5)
-    press(second, "Pause")
-    settle(first, "[bench.playing, bench._task.done()]", [False, True])
-    first.page.get_by_role("button", name="Play", exact=True).first.wait_for(timeout=READY)
+    press(first, "Pause")
+    settle(second, "[bench.playing, bench._task.done()]", [False, True])
+    second.page.get_by_role("button", name="Play", exact=True).first.wait_for(timeout=READY)
     press(first, "sdls")
     settle(second, "bench.session.method", "sdls")
     second.page.wait_for_selector("button.mod-active >> text=sdls", timeout=READY)
