@@ -1,12 +1,11 @@
 // Writes poses into the three.js objects that pythreejs has made.
 //
-// One binary message is one frame: 12 float32 a node, the columns x, y, z and position of its
-// matrix. The browser says which frames it has drawn, so that the kernel never sends far ahead; of
-// what comes faster than it can be drawn, the newest few are kept and the rest dropped.
+// One binary message is one frame: rows of 12 float32, the columns x, y, z and position of a
+// matrix. A row moves an object as a whole, or some of the points of a mesh of many parts. The
+// browser says which frames it has drawn, so that the kernel never sends far ahead; what comes
+// faster than it can be drawn is overwritten by what is newer.
 
 const REPORT_EVERY = 15; // frames; each report makes the kernel busy and idle, and the page says so
-
-const WAITING = 1; // frames kept for the next redraw: the newest
 
 async function resolve(manager, references) {
   const models = await Promise.all(
@@ -16,10 +15,49 @@ async function resolve(manager, references) {
   return models;
 }
 
-function place(object, numbers, at) {
-  const [ax, ay, az, bx, by, bz, cx, cy, cz, px, py, pz] = numbers.subarray(at, at + 12);
-  object.matrix.set(ax, bx, cx, px, ay, by, cy, py, az, bz, cz, pz, 0, 0, 0, 1);
-  object.matrixWorldNeedsUpdate = true;
+// Two kinds of movers: (numbers of the frame) => what they say is done.
+
+function whole(object, row) {
+  return (numbers) => {
+    const [ax, ay, az, bx, by, bz, cx, cy, cz, px, py, pz] = numbers.subarray(12 * row, 12 * row + 12);
+    object.matrix.set(ax, bx, cx, px, ay, by, cy, py, az, bz, cz, pz, 0, 0, 0, 1);
+    object.matrixWorldNeedsUpdate = true;
+  };
+}
+
+function parts(object, runs) {
+  const { position, normal } = object.geometry.attributes;
+  for (const one of [position, normal]) if (one) one.rest = one.rest ?? one.array.slice();
+  return (numbers) => {
+    let from = 0;
+    for (const [row, count] of runs) {
+      const matrix = numbers.subarray(12 * row, 12 * row + 12), to = from + 3 * count;
+      carry(position, matrix, from, to);
+      if (normal) carry(normal, upright(matrix), from, to);
+      from = to;
+    }
+    position.needsUpdate = true;
+    if (normal) normal.needsUpdate = true;
+    object.visible = true;
+  };
+}
+
+function carry({ rest, array }, [ax, ay, az, bx, by, bz, cx, cy, cz, px, py, pz], from, to) {
+  for (let i = from; i < to; i += 3) {
+    const x = rest[i], y = rest[i + 1], z = rest[i + 2];
+    array[i] = ax * x + bx * y + cx * z + px;
+    array[i + 1] = ay * x + by * y + cy * z + py;
+    array[i + 2] = az * x + bz * y + cz * z + pz;
+  }
+}
+
+function upright(matrix) { // how normals turn, where R stretches along its columns: R (RᵀR)⁻¹
+  const turned = new Float32Array(12);
+  for (let i = 0; i < 9; i += 3) {
+    const [x, y, z] = matrix.subarray(i, i + 3), square = x * x + y * y + z * z;
+    turned.set([x / square, y / square, z / square], i);
+  }
+  return turned;
 }
 
 async function render({ model, el }) {
@@ -28,41 +66,41 @@ async function render({ model, el }) {
   status.setAttribute("role", "img");
   el.appendChild(status);
 
-  const [renderer, ...nodes] = await resolve(model.widget_manager, [
-    model.get("renderer"),
-    ...model.get("nodes"),
-  ]);
+  const [renderer] = await resolve(model.widget_manager, [model.get("renderer")]);
   const scene = renderer.get("scene");
-  const waiting = []; // frames that came while one was being drawn; the newest few are kept
-  let drawing = null; // the frame that is in the scene and not yet on the screen
+  let movers = [], rows = -1; // what to move, and how many rows a frame for it has
+  let gathering = 0;
+  let newest = null; // the frame that is in the scene and not yet on the screen
   let reported = -1; // number of the newest frame that the kernel has been told of
   let shown = 0;
 
-  function receive(content, buffers) {
-    if (content.frame === undefined) return;
-    waiting.push({ ...content, view: buffers[0] });
-    if (waiting.length > WAITING) waiting.shift();
-    if (!drawing) next();
+  async function gather() {
+    const turn = ++gathering, plan = model.get("plan");
+    const nodes = await resolve(model.widget_manager, model.get("nodes"));
+    if (turn !== gathering || plan.length !== nodes.length) return; // there is news already
+    movers = plan.map((one, i) => (Array.isArray(one) ? parts : whole)(nodes[i].obj, one));
+    rows = model.get("rows");
+    hello();
   }
 
-  function next() {
-    drawing = waiting.shift() ?? null;
-    if (!drawing) return;
-    const { buffer, byteOffset, byteLength } = drawing.view;
+  function receive(content, buffers) {
+    if (content.frame === undefined || buffers[0].byteLength !== 48 * rows) return;
+    const { buffer, byteOffset, byteLength } = buffers[0];
     const numbers = new Float32Array(buffer, byteOffset, byteLength / 4);
-    nodes.forEach((node, i) => place(node.obj, numbers, 12 * i));
+    for (const move of movers) move(numbers);
+    newest = content;
     renderer.trigger("rerender", renderer, {});
   }
 
   function drawn() {
-    if (!drawing) return;
-    const { frame, change } = drawing;
+    if (!newest) return;
+    const { frame, change } = newest;
+    newest = null;
     Object.assign(status.dataset, { frame, change, shown: ++shown });
     if (frame - reported >= REPORT_EVERY) {
       reported = frame;
       model.send({ drawn: frame });
     }
-    next();
   }
 
   function describe() {
@@ -73,14 +111,16 @@ async function render({ model, el }) {
 
   const hello = () => !document.hidden && model.send({ hello: true });
   model.on("msg:custom", receive);
+  model.on("change:plan", gather);
   model.on("change:description", describe);
   scene.on("afterRender", drawn);
   document.addEventListener("visibilitychange", hello);
   describe();
-  hello();
+  await gather();
 
   return () => {
     model.off("msg:custom", receive);
+    model.off("change:plan", gather);
     model.off("change:description", describe);
     scene.off("afterRender", drawn);
     document.removeEventListener("visibilitychange", hello);

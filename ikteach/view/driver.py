@@ -6,11 +6,13 @@ from time import monotonic
 from typing import Any
 
 import anywidget
-import numpy as np
 import traitlets
 from ipywidgets import Widget, widget_serialization
 
 from ikteach.arrays import Array
+
+Move = tuple[Widget, int | list[list[int]]]
+"""What is moved, and by which row of a frame; or, of a mesh, [row, points] of each of its parts."""
 
 AHEAD = 30  # frames that may be sent and not yet known to be drawn: a second's
 PATIENCE = 10.0  # [s] without a sign of life before a page counts as gone
@@ -19,27 +21,37 @@ PATIENCE = 10.0  # [s] without a sign of life before a page counts as gone
 class Driver(anywidget.AnyWidget):
     """Writes matrices into pythreejs objects (see driver.js) and hears what the page has drawn.
 
-    renderer, nodes   what it draws with and what it moves
-    description       what the picture shows, in words, for those who cannot see it
-    on_sign           is called with True when a page begins to look and with False when it has
-                      drawn, from whichever thread hears of it
+    renderer      what it draws with
+    nodes, plan   what it moves, and how (`Move`); set them with `move`
+    rows          how many rows a frame has
+    description   what the picture shows, in words, for those who cannot see it
+    on_sign       is called with True when a page begins to look and with False when it has
+                  drawn, from whichever thread hears of it
     """
 
     _esm = Path(__file__).parent / "driver.js"
     renderer = traitlets.Instance(Widget).tag(sync=True, **widget_serialization)
     nodes = traitlets.List(traitlets.Instance(Widget)).tag(sync=True, **widget_serialization)
+    plan: Any = traitlets.List().tag(sync=True)
+    rows = traitlets.Int().tag(sync=True)
     description = traitlets.Unicode().tag(sync=True)
 
-    def __init__(self, renderer: Widget, nodes: Sequence[Widget], **kwargs: Any) -> None:
-        super().__init__(renderer=renderer, nodes=list(nodes), **kwargs)
+    def __init__(self, renderer: Widget, **kwargs: Any) -> None:
+        super().__init__(renderer=renderer, **kwargs)
         self.sent = self.drawn = -1
         self.greeted = False
         self.heard = monotonic()
         self.on_sign: Callable[[bool], None] = lambda new: None
         self.on_msg(self._hear)
 
+    def move(self, moves: Sequence[Move], rows: int) -> None:
+        """Have the page move these from now on, by frames of so many rows."""
+        with self.hold_sync():
+            self.nodes, self.plan = [node for node, _ in moves], [how for _, how in moves]
+            self.rows = rows
+
     def show(self, matrices: Array, change: int = 0) -> None:
-        """Send [R | p] (nodes, 3, 4) to the page. `change` comes back with the drawn frame."""
+        """Send [R | p] (rows, 3, 4) to the page. `change` comes back with the drawn frame."""
         self.sent += 1
         numbers = matrices.swapaxes(-1, -2).astype("<f4")
         self.send({"frame": self.sent, "change": change}, buffers=[numbers.tobytes()])
@@ -64,8 +76,3 @@ class Driver(anywidget.AnyWidget):
         else:
             self.drawn = max(self.drawn, int(content["drawn"]))
         self.on_sign(new)
-
-
-def rows(*matrices: Array) -> Array:
-    """Stack [R | p] (..., 3, 4) into one (nodes, 3, 4)."""
-    return np.concatenate([m.reshape(-1, 3, 4) for m in matrices])

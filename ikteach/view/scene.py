@@ -15,14 +15,14 @@ from ikteach.arrays import Array, ArrayLike
 from ikteach.body import Effectors, Tree
 from ikteach.body.rotation import sticks, transforms
 from ikteach.names import unknown
-from ikteach.view import solids
+from ikteach.view import flesh, shapes, solids
 from ikteach.view.cameras import Cameras
 from ikteach.view.closing import close_all
-from ikteach.view.driver import Driver, rows
-from ikteach.view.flesh import mesh
-from ikteach.view.overlays import MAKERS, Layer, effector_colour
+from ikteach.view.driver import Driver, Move
+from ikteach.view.fused import Piece, fused, shifted
+from ikteach.view.overlays import MAKERS, Layer
 from ikteach.view.picture import Still
-from ikteach.view.skin import DARK, EFFECTOR_COLOURS, LIGHT, SHIRT, Part, skin_of
+from ikteach.view.skin import DARK, EFFECTOR_COLOURS, GREY, LIGHT, SHIRT, Part, skin_of
 from ikteach.view.solids import node
 from ikteach.view.stage import CAMERAS, FIELD, LAYERS, SQUARE, Stage
 from ikteach.view.still import StillScene
@@ -52,21 +52,21 @@ class Scene:
     ) -> None:  # fmt: skip
         self.tree, self.effectors = tree, effectors
         self.stage = stage = Stage(tree, effectors, names, apart)
-        unit = stage.unit
-        self._grounds = [node() for _ in names]
+        unit, f, n, k = stage.unit, len(names), len(tree), len(effectors)
+        # The rows of a frame: grounds (f), floor, joints (f, n), targets (sets, k), gaps (f, k).
+        self._sets = 1 if stage.overlaid else f
+        floor, joint = f, f + 1
+        target = joint + f * n
+        gap = target + self._sets * k
+        self._rows = gap + f * k
         self._floor = node([solids.grid(unit, dark)])
-        self._joints = [[node() for _ in tree.names] for _ in names]
-        shared = 1 if stage.overlaid else len(names)  # sets of targets
-        self.targets = [
-            node(solids.target(name, effector_colour(i), unit))
-            for _ in range(shared)
-            for i, name in enumerate(effectors.names)
-        ]
-        gaps = [node(solids.gap(unit)) for _ in range(len(names) * len(effectors))]
-        for f in range(len(names)):
-            self._dress(f)
-        joints = [group for figure in self._joints for group in figure]
-        nodes = [*self._grounds, self._floor, *joints, *self.targets, *gaps]
+        self.targets = solids.marks(effectors.names, unit, self._sets)
+        bodies = [self._body(i, i, joint + i * n) for i in range(f)]
+        rod = shapes.rod(0.006 * unit)
+        gaps = fused([Piece(row, rod, GREY) for row in range(gap, self._rows)])
+        self._moves: list[Move] = [
+            (self._floor, floor), *zip(self.targets, range(target, gap), strict=True), *bodies, gaps
+        ]  # fmt: skip
 
         aspect = width / height
         scale = max(unit, stage.spread / (aspect * tan(radians(FIELD / 2)) * 2.7))
@@ -74,7 +74,8 @@ class Scene:
             fov=FIELD, aspect=aspect, near=0.05 * unit, far=40 * max(scale, 1)
         )
         self.scene = three.Scene(
-            children=[*nodes, *solids.lights()], background=DARK if dark else LIGHT
+            children=[*(thing for thing, _ in self._moves), *self._names(), *solids.lights()],
+            background=DARK if dark else LIGHT,
         )
         self.renderer = three.Renderer(
             scene=self.scene, camera=self.camera, antialias=False, width=width, height=height,
@@ -82,9 +83,10 @@ class Scene:
         )  # fmt: skip
         self.cameras = Cameras(self.renderer, aspect, scale)
         self.look_from(stage.side)
-        self.driver = Driver(self.renderer, nodes, description=stage.words)
+        self.driver = Driver(self.renderer, description=stage.words)
         self.driver.on_sign = self._greet
-        self._made: dict[str, Layer] = {}  # in the order of their nodes in the driver
+        self.driver.move(self._moves, self._rows)
+        self._made: dict[str, Layer] = {}
         self._on: set[str] = set()
         self._dark = dark
         self._last: dict[str, Any] = {}
@@ -101,11 +103,12 @@ class Scene:
         if layer not in LAYERS:
             raise LookupError(unknown("layer", layer, LAYERS))
         if on and layer not in self._made:
-            self._make(layer)
+            made = self._made[layer] = MAKERS[layer](self.stage)
+            self.scene.children = [*self.scene.children, made.root]
         if on != (layer in self._on):
             self._on ^= {layer}
-            for thing in self._made[layer].things:
-                thing.visible = on
+            self._made[layer].root.visible = on
+            self._plan()
             self.show(**self._last) if self._last else None
 
     def look_from(self, side: str) -> None:
@@ -137,24 +140,22 @@ class Scene:
         now = stage.now(theta, targets, floor, advance, effector, columns, ellipsoid, reach)
         places = stage.places[:, None]
         at = now.targets + places
-        marks = at[: len(self.targets) // len(self.effectors)].reshape(-1, 3)
+        marks = at[: self._sets].reshape(-1, 3)
         upright = np.broadcast_to(np.eye(3), (len(marks), 3, 3))
         matrices = [
             transforms(np.broadcast_to(np.eye(3), (len(stage), 3, 3)), stage.places),
-            self._ground(now.floor, advance),
+            self._ground(now.floor, advance)[None],
             transforms(now.orientations, now.positions + places),
             transforms(upright, marks),
             sticks(now.effectors + places, at),
         ]
-        for name, layer in self._made.items():
-            moved = layer.place(now) if name in self._on else np.zeros((len(layer.nodes), 3, 4))
-            matrices.append(moved)
+        matrices += [layer.place(now) for layer in self._drawn()]
         self._last = {
             "theta": theta, "targets": targets, "floor": floor, "advance": advance,
             "change": change, "effector": effector, "columns": columns, "ellipsoid": ellipsoid,
             "reach": reach,
         }  # fmt: skip
-        self.driver.show(rows(*matrices), change)
+        self.driver.show(np.concatenate([m.reshape(-1, 3, 4) for m in matrices]), change)
 
     def clear(self) -> None:
         """Forget trails and footprints."""
@@ -162,11 +163,8 @@ class Scene:
             layer.clear()
 
     def mount(self, *more: widgets.Widget) -> None:
-        """Have the page show the driver, with all it moves, and these widgets under the picture."""
-        kept = [child for child in self.widget.children if child is not self.driver]
-        # The driver reads what it moves when it is put into the page: take it out, and in again.
-        self.widget.children = [*kept, *more]
-        self.widget.children = [*kept, *more, self.driver]
+        """Have the page show these widgets under the picture."""
+        self.widget.children = [*self.widget.children, *more]
 
     def still(self) -> Still:
         """What was shown last as a picture, which needs no kernel to be seen."""
@@ -198,15 +196,17 @@ class Scene:
         if new and self._last:
             self.show(**self._last)
 
-    def _make(self, layer: str) -> None:
-        made = self._made[layer] = MAKERS[layer](self.stage, self._joints)
-        for thing in made.things:
-            thing.visible = False
-        if made.roots:
-            self.scene.children = [*self.scene.children, *made.roots]
-        if made.nodes:
-            self.driver.nodes = [*self.driver.nodes, *made.nodes]
-            self.mount()
+    def _drawn(self) -> list[Layer]:
+        """The layers that are on, in the order of their rows."""
+        return [layer for name, layer in self._made.items() if name in self._on]
+
+    def _plan(self) -> None:
+        """Tell the driver what it is to move: what is always there, and the layers that are on."""
+        moves, rows = list(self._moves), self._rows
+        for layer in self._drawn():
+            moves += [(thing, shifted(runs, rows)) for thing, runs in layer.moves]
+            rows += layer.rows
+        self.driver.move(moves, rows)
 
     def _ground(self, floor: float, advance: float) -> Array:
         if self.stage.planar:
@@ -214,23 +214,27 @@ class Scene:
         glide = -(advance % (SQUARE * self.stage.unit))
         return STILL + [[0, 0, 0, 0], [0, 0, 0, floor], [0, 0, 0, glide]]
 
-    def _dress(self, f: int) -> None:
-        """Put flesh, or rods, on the joints of figure f, and its name over its head."""
-        stage, thick = self.stage, 0.03 * self.stage.unit
-        holders: dict[str | None, three.Group] = dict(
-            zip(self.tree.names, self._joints[f], strict=True)
-        )
-        holders[None] = self._grounds[f]
-        parts = [self._coloured(part, f) for part in skin_of(self.tree, self.effectors, thick)]
-        opacity = 0.5 if stage.overlaid and f > 0 else 1.0
-        for joint in dict.fromkeys(part.joint for part in parts):
-            here = [part for part in parts if part.joint == joint]
-            holders[joint].children = [mesh(here, opacity)]
-        if stage.names[f]:
-            words = solids.label(
-                stage.names[f], self._colour(f), 0.13 * stage.unit, stage.name_at(f)
+    def _body(self, f: int, ground: int, joint: int) -> Move:
+        """The flesh, or rods, of figure f, moved by the rows of its ground and its joints."""
+        stage = self.stage
+        rows: dict[str | None, int] = {name: joint + j for j, name in enumerate(self.tree.names)}
+        rows[None] = ground
+        skin = skin_of(self.tree, self.effectors, 0.03 * stage.unit)
+        parts = [self._coloured(part, f) for part in skin]
+        pieces = flesh.pieces(parts, rows, flesh.FINE if len(stage) == 1 else flesh.PLAIN)
+        return fused(pieces, opacity=0.5 if stage.overlaid and f > 0 else 1.0)
+
+    def _names(self) -> list[three.Sprite]:
+        """The names of the figures, over their heads."""
+        stage, names = self.stage, self.stage.names
+        return [
+            label
+            for f, name in enumerate(names)
+            if name
+            for label in solids.labels(
+                name, self._colour(f), 0.13 * stage.unit, [stage.places[f] + stage.name_at(f)]
             )
-            holders[None].children = [*holders[None].children, words]
+        ]
 
     def _colour(self, f: int) -> str:
         return SHIRT if len(self.stage) == 1 else EFFECTOR_COLOURS[f % len(EFFECTOR_COLOURS)]

@@ -32,11 +32,12 @@ class CursorScene(Scene):
         super().__init__(session.tree, _cursor(session), dark=True, **options)
         unit = self.stage.unit
         self._words = [
-            solids.label(words, colour, 0.08 * unit, [0, 0.12 * unit, 0])
+            word
             for words, colour in (("within reach", WHITE), ("out of reach", RED))
+            for word in solids.labels(words, colour, 0.08 * unit, [[0, 0.12 * unit, 0]])
         ]
-        (self._ball,) = self.targets[0].children
-        self.targets[0].children = [self._ball, *self._words]
+        (self._ball,) = self.targets
+        self._ball.children = self._words
         self._within: bool | None = None
 
     def point(self, session: Reaching, change: int) -> None:

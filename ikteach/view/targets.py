@@ -11,9 +11,9 @@ import traitlets
 from ikteach.arrays import Array, ArrayLike
 from ikteach.view.acting import in_words
 from ikteach.view.handles import Handles
-from ikteach.view.overlays import effector_colour
 from ikteach.view.positions import Positions
 from ikteach.view.scene import Scene
+from ikteach.view.solids import effector_colour
 from ikteach.view.stage import View
 
 HERE = Path(__file__).parent

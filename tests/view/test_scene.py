@@ -5,6 +5,7 @@ import io
 
 import numpy as np
 import pytest
+import pythreejs as three
 from ipywidgets.widgets.widget import _instances
 from PIL import Image
 
@@ -26,7 +27,6 @@ J = jacobian(TREE, FRAMES, EFFECTORS)[6:9]
 DRAWN = {
     "effector": 2, "columns": J, "ellipsoid": ellipsoid(J), "reach": [((0.2, 0.4, 0), 0.1, 0.7)],
 }  # fmt: skip
-NEEDS_NODES = [layer for layer in LAYERS if layer not in ("world axes", "joint axes")]
 
 
 @pytest.fixture
@@ -44,13 +44,13 @@ def make():
 
 
 def message(scene, theta=THETA, targets=TARGETS, **options):
-    """The matrices (nodes, 3, 4) of the frame that `show` sends."""
+    """The rows (rows, 3, 4) of the frame that `show` sends."""
     sent = []
     scene.driver.send = lambda content, buffers: sent.append((content, buffers))
     scene.show(theta, targets, **options)
     ((content, (numbers,)),) = sent
     matrices = np.frombuffer(numbers, "<f4").reshape(-1, 4, 3).swapaxes(1, 2)
-    assert len(matrices) == len(scene.driver.nodes)
+    assert len(matrices) == scene.driver.rows
     return content, matrices
 
 
@@ -68,6 +68,43 @@ def test_a_lone_human_sends_what_moves_and_no_more(make):
     assert gaps[:, :, 1] == pytest.approx(TARGETS - HERE, abs=1e-6)
 
 
+def moved(node, runs, rows):
+    """Where the points of a mesh of many parts are (v, 3), as driver.js puts them."""
+    rest = node.geometry.attributes["position"].array
+    row = np.repeat(*np.transpose(runs))
+    assert len(row) == len(rest)
+    return np.vecmat(rest, rows[row, :, :3].swapaxes(1, 2)) + rows[row, :, 3]
+
+
+@pytest.mark.parametrize("names", [[""], ["a", "b", "c", "d"]])
+def test_what_is_drawn_takes_few_calls_and_few_models(make, names):
+    before = len(_instances)
+    scene = make(names=names)
+    for layer in LAYERS:
+        scene.switch(layer)
+    drawn = [node for node in list(_instances.values())[before:]
+             if isinstance(node, three.Mesh | three.Line | three.Sprite)]  # fmt: skip
+    assert len(drawn) <= 13 + 12 * len(names)
+    assert len(_instances) - before < 120 + 30 * len(names)
+
+
+def test_a_body_is_one_mesh_whose_parts_follow_their_joints(make):
+    scene = make()
+    # Targets, then the body, then the rods from effectors to targets.
+    (body, runs), _ = list(zip(scene.driver.nodes, scene.driver.plan, strict=True))[-2:]
+    _, rows = message(scene, TREE.rest)
+    rest = moved(body, runs, rows)
+    assert 1.7 < np.ptp(rest[:, 1]) < 1.95  # as tall as a human
+    elbow = TREE.index("elbow.l")
+    bent = TREE.rest.copy()
+    bent[elbow] = TREE.upper[elbow]
+    _, rows = message(scene, bent)
+    far = np.linalg.norm(moved(body, runs, rows) - rest, axis=-1)
+    row = np.repeat(*np.transpose(runs))
+    assert (far[row != 2 + elbow] < 1e-6).all()
+    assert far[row == 2 + elbow].max() > 0.3
+
+
 def test_a_new_page_is_shown_what_was_shown_last(make):
     scene = make()
     _, before = message(scene, floor=-0.9)
@@ -82,27 +119,25 @@ def test_a_new_page_is_shown_what_was_shown_last(make):
 @pytest.mark.parametrize("layer", LAYERS)
 def test_a_layer_costs_nothing_before_it_is_wanted(make, layer):
     scene = make()
-    plain = len(scene.driver.nodes)
+    plain = scene.driver.rows
     assert not any(scene.layers.values())
     scene.switch(layer)
     assert scene.layers[layer]
-    assert (len(scene.driver.nodes) > plain) == (layer in NEEDS_NODES)
-    assert scene.driver in scene.widget.children
+    assert (scene.driver.rows > plain) == (layer != "world axes")  # which never move
     _, on = message(scene, **DRAWN)
     assert np.isfinite(on).all()
     scene.switch(layer, False)
     assert not scene.layers[layer]
     _, off = message(scene, **DRAWN)
-    assert (off[plain:] == 0).all()
-    assert off[:plain] == pytest.approx(on[:plain])
-    nodes = len(scene.driver.nodes)
+    assert off == pytest.approx(on[:plain])
+    made = len(_instances)
     scene.switch(layer)
-    assert len(scene.driver.nodes) == nodes
+    assert len(_instances) == made
 
 
 def test_columns_and_ellipsoid_stand_at_the_effector(make):
     scene = make()
-    plain = len(scene.driver.nodes)
+    plain = scene.driver.rows
     scene.switch("columns of J")
     scene.switch("ellipsoid")
     _, matrices = message(scene, **DRAWN)
@@ -194,7 +229,7 @@ def test_closing_frees_every_widget(make):
     scene.cameras.orthographic = True
     scene.show(THETA, TARGETS, **DRAWN)
     scene.still()
-    assert len(_instances) > len(before) + 300
+    assert len(_instances) > len(before) + 60
     scene.close()
     assert set(_instances) - before == set()
 

@@ -1,0 +1,92 @@
+"""One kernel and its pages: two that look at once, one that comes again, none any more."""
+
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser
+
+from tests.browser.conftest import READY, Lab, Notebook
+from tests.browser.test_gait import DRIVER, frames, settle
+from tests.browser.test_workbench import LOOPS, press
+
+NAME = "09_workbench.ipynb"
+FRAME = f"+document.querySelector('{DRIVER}').dataset.frame"
+WATCH = f"""
+import asyncio, pathlib
+from ikteach.view import driver
+driver.PATIENCE = 1.0
+async def watch():
+    while True:
+        pathlib.Path("loops").write_text(str({LOOPS}))
+        await asyncio.sleep(0.2)
+watching = asyncio.ensure_future(watch())
+"""
+
+
+@pytest.fixture(scope="module")
+def first(open_notebook: Any) -> Iterator[Notebook]:
+    """A page in which the workbench has played, in a notebook that has been saved with it."""
+    notebook = open_notebook(NAME)
+    notebook.run_cell("bench = Workbench()")
+    notebook.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
+    press(notebook, "Pause")  # the second page has enough to do
+    settle(notebook, "bench._task.done()", True)
+    notebook.command("docmanager:save")
+    yield notebook
+    assert notebook.errors == []
+
+
+@pytest.fixture(scope="module")
+def second(first: Notebook, lab: Lab, browser: Browser) -> Iterator[Notebook]:
+    """Another page with the same notebook, on the same kernel: it shows the pose without a cell."""
+    context = browser.new_context(viewport={"width": 1440, "height": 1100})
+    notebook = Notebook(context.new_page(), lab, NAME)
+    notebook.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=2 * READY)
+    yield notebook
+    context.close()
+    assert notebook.errors == []
+
+
+def test_two_tabs_show_the_same(first: Notebook, second: Notebook) -> None:
+    assert len(first.lab.ask("kernels")) == 1
+    press(second, "Play")
+    for page in first, second:
+        frames(page, 5)
+    press(first, "Pause")
+    settle(second, "[bench.playing, bench._task.done()]", [False, True])
+    second.page.get_by_role("button", name="Play", exact=True).first.wait_for(timeout=READY)
+    press(first, "sdls")
+    settle(second, "bench.session.method", "sdls")
+    second.page.wait_for_selector("button.mod-active >> text=sdls", timeout=READY)
+    sent = first.kernel("bench.scene.driver.sent")
+    for page in first, second:
+        page.page.wait_for_function(f"{FRAME} >= {sent}", timeout=READY)
+    press(first, "Play")
+    for page in first, second:
+        frames(page, 5)
+    assert first.kernel(LOOPS) == 1
+    assert first.kernel("bench.status.wrong") == ""
+
+
+def test_a_page_that_comes_later_can_run_the_cell_again(first: Notebook, second: Notebook) -> None:
+    ticks = second.kernel("bench.session.ticks")  # it has shown what went on without that
+    second.run_cell("bench = Workbench()")
+    settle(second, f"bench.session.ticks < {ticks} and bench.scene.driver.greeted", True)
+    frames(second, 5)
+    assert second.kernel(LOOPS) == 1
+    gone = first.page.locator(DRIVER).first
+    gone.wait_for(state="detached", timeout=READY)  # the other page shows no dead picture
+
+
+def test_no_loop_is_left_when_the_notebook_is_closed(first: Notebook, second: Notebook) -> None:
+    second.kernel("None", WATCH)
+    said = second.lab.folder / "loops"
+    for page in first, second:
+        page.page.goto("about:blank")
+    end = time.monotonic() + READY / 1000
+    while not said.exists() or said.read_text() != "0":
+        assert time.monotonic() < end, "the loop runs on"
+        time.sleep(0.2)
+    assert len(second.lab.ask("kernels")) == 1  # and the kernel is still there
