@@ -70,6 +70,8 @@ def test_the_recipe_installs_the_packages_before_it_copies_the_repository() -> N
 
 def test_no_recipe_lowers_the_server_s_guard() -> None:
     for file in (ROOT / "binder").rglob("*"):
+        if "jupyterhub" in file.parts:
+            continue  # tests/hub has its own, by which it refuses them
         if file.is_file() and file.suffix != ".pyc":
             said = re.search(r"token=['\"]{2}|token=$|allow_origin|disable_check_xsrf|password",
                              file.read_text(encoding="utf-8"))  # fmt: skip

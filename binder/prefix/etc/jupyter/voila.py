@@ -8,6 +8,6 @@ def own_mathjax(page, **_):
     return page | {"fullMathjaxUrl": None, "mathjaxConfig": None}
 
 
-c.VoilaConfiguration.update(  # noqa: F821
+c.VoilaConfiguration.update(
     SETTINGS["VoilaConfiguration"], template="ikteach", page_config_hook=own_mathjax
 )
