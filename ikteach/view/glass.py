@@ -7,6 +7,7 @@ import ipywidgets as widgets
 from ikteach.motion.anatomy import Anatomy, anatomy
 from ikteach.motion.session import Session
 from ikteach.view.acting import Actor
+from ikteach.view.closing import close_all
 from ikteach.view.glass_pages import PAGES, Names, Page
 from ikteach.view.picture import Picture
 from ikteach.view.status import Status
@@ -99,10 +100,7 @@ class Glass(widgets.VBox):  # type: ignore[misc]
         """Free the widgets."""
         if getattr(self, "comm", None) is None:
             return
-        for one in self.children:
-            for inner in getattr(one, "children", ()):
-                inner.close()
-            one.close()
+        close_all(*self.children, self.layout)
         super().close()
 
     def _again(self) -> None:

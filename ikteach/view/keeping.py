@@ -9,6 +9,7 @@ from ikteach.formats.session import load, save
 from ikteach.motion.log import Log
 from ikteach.motion.session import Session
 from ikteach.view.acting import Actor
+from ikteach.view.closing import close_all
 from ikteach.view.replay import Replay
 from ikteach.view.status import Status
 
@@ -43,8 +44,7 @@ class Keeper(widgets.VBox):  # type: ignore[misc]
         """Free the widgets."""
         if getattr(self, "comm", None) is None:
             return
-        for one in (self.saving, self.opening, *self.place.children, *self.children):
-            one.close()
+        close_all(*self.children, self.layout)
         super().close()
 
     def _path(self) -> Path:

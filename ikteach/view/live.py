@@ -100,7 +100,7 @@ class Live(widgets.VBox):  # type: ignore[misc]
         if self._living.get(self._slot) is self:
             del self._living[self._slot]
         self.scene.close()
-        close_all(*self.children)
+        close_all(*self.children, self.layout)
         super().close()
 
     def stop(self) -> None:

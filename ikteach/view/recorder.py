@@ -13,6 +13,7 @@ import ipywidgets as widgets
 from ikteach.formats import movie
 from ikteach.motion.session import Session
 from ikteach.view.acting import Actor
+from ikteach.view.closing import close_all
 from ikteach.view.filming import Film, Shot, shot
 from ikteach.view.scene import CAMERAS
 from ikteach.view.status import Status
@@ -66,9 +67,8 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
         self.status = Status()
         self.start.on_click(lambda _: self._act(self.begin))
         self.stop.on_click(lambda _: self.halt())
-        narrow = widgets.Layout(width="210px")
         for one in (self.width, self.height, self.rate, self.seconds, self.which, self.side):
-            one.layout = narrow
+            one.layout.width = "210px"
         super().__init__(
             [
                 self.name,
@@ -118,9 +118,7 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
             del self._living[self._slot]
         if getattr(self, "comm", None) is None:
             return
-        for box in self.children:
-            for one in (*getattr(box, "children", ()), box):
-                one.close()
+        close_all(*self.children, self.layout)
         super().close()
 
     async def _record(self) -> None:

@@ -375,7 +375,7 @@ class Workbench(Live):
     def _fit(self) -> None:
         """Leave the picture its width, so that words under it wrap."""
         width = self.scene.renderer.width + 4
-        self._stage.layout = {"flex": f"0 0 {width}px", "width": f"{width}px"}
+        self._stage.layout.flex, self._stage.layout.width = f"0 0 {width}px", f"{width}px"
 
     def _targets(self) -> Targets:
         targets = Targets(self.scene, self.session.targets, low=-ROOM, high=ROOM)

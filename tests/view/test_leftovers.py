@@ -7,6 +7,7 @@ import time
 import tracemalloc
 
 import pytest
+from ipywidgets.widgets.widget import _instances
 
 from ikteach.view import live
 from ikteach.view.workbench import Workbench
@@ -70,6 +71,12 @@ def test_memory_does_not_grow(played):
         assert grown < ALLOWED * TICKS
 
     played(run)
+
+
+def test_a_workbench_that_is_closed_frees_every_widget(tmp_path):
+    before = set(_instances)
+    Workbench(folder=tmp_path).close()
+    assert set(_instances) == before
 
 
 def test_quit_ends_the_loop(played):
