@@ -1,4 +1,4 @@
-"""Open the course in JupyterLab: `python -m ikteach`; or build it: `python -m ikteach build`."""
+"""Open the course in JupyterLab: `python -m ikteach`; or make a build or a site of it."""
 
 import argparse
 import errno
@@ -31,6 +31,10 @@ def main(argv: list[str] | None = None) -> int:
             return collect.main(argv[1:])
         if argv[:1] == ["lecture"]:
             return open_lecture(argv[1:])
+        if argv[:1] == ["site"]:
+            from ikteach.course import site
+
+            return site.main(PACKAGE, argv[1:])
         options, extra = parse(argv)
         return open_course(find_course(PACKAGE), options, extra)
     except OSError as error:
@@ -45,6 +49,7 @@ def parse(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
         prog="python -m ikteach",
         usage="%(prog)s [FOLDER] [--no-browser] [--port N] [--list] [-- JUPYTERLAB OPTIONS]\n"
         "       %(prog)s build student|instructor|html FOLDER\n"
+        "       %(prog)s site FOLDER [--pyodide FOLDER|ADDRESS]\n"
         "       %(prog)s lecture [FOLDER]\n"
         "       %(prog)s collect FOLDER",
         description="Open the course on inverse kinematics in JupyterLab.",

@@ -29,6 +29,7 @@ TOP = {"view", "course", "__main__"}
 SCREEN = {"matplotlib", "ipywidgets", "pythreejs", "anywidget", "traitlets", "IPython"}
 PAGES = {"nbformat", "nbclient", "nbconvert", "latex2mathml", "pygments"}
 SERVER = {"voila", "tornado", "jupyter_client"}
+SITE = {"hatchling", "jupyter_core", "packaging"}
 HEAVY = ["pandas", "matplotlib", "ipywidgets", "pythreejs", "anywidget", "traitlets"]
 
 
@@ -72,7 +73,7 @@ def test_only_numpy_on_the_ground_pandas_in_study_and_screens_on_top(module):
     rooms = {
         "study": {"pandas"},
         "trials": {"pandas"},
-        "course": SCREEN | PAGES | SERVER | {"pandas"},
+        "course": SCREEN | PAGES | SERVER | SITE | {"pandas"},
         "server": {"jupyter_server"},
     }
     allowed = rooms.get(here, set())

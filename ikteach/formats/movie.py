@@ -5,6 +5,7 @@ it works within the process, needs no program on the path, and reads back what i
 """
 
 import os
+import sys
 import tempfile
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
@@ -35,6 +36,12 @@ KINDS = {
     ".gif": Kind("gif", "pal8", {}, even=False),
 }
 LARGEST = 4096  # [pixels] a side
+MISSING = "movies need the PyAV library: pip install 'ikteach[movie]'"
+IN_THE_BROWSER = (
+    "there is no PyAV for the Python that runs in the browser; save the session, and where "
+    "ikteach[movie] is installed movie.write('walk.mp4', film(session.load('session'))) films it, "
+    "with ikteach.formats.movie, ikteach.formats.session and ikteach.view.filming.film"
+)
 FASTEST = {".gif": 50}  # a GIF counts in hundredths, and players slow down what is under two
 
 
@@ -168,10 +175,7 @@ def library() -> Any:
     try:
         import av
     except ImportError:
-        raise ImportError(
-            "movies need the PyAV library: pip install 'ikteach[movie]' (there is none for a "
-            "Python that runs in the browser)"
-        ) from None
+        raise ImportError(IN_THE_BROWSER if sys.platform == "emscripten" else MISSING) from None
     return av
 
 

@@ -264,7 +264,9 @@ class Session:
         begun = len(rows) < last + 2
         jitter = {}
         for name in self.methods:
-            theta = np.array([row.done[name].theta for row in rows]).reshape(len(rows), -1)
+            theta = np.array([row.done[name].theta for row in rows]).reshape(
+                len(rows), self.tree.rest.size
+            )
             if begun:
                 theta = np.concatenate([theta[:1], theta[:1], theta])
             jitter[name] = np.linalg.norm(np.diff(theta, n=2, axis=0), axis=-1)
