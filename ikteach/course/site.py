@@ -235,7 +235,7 @@ def extensions(folder: Path, kernel: Path) -> None:
 def _extension(name: str, kernel: Path) -> Path:
     from jupyter_core.paths import jupyter_path
 
-    roots = [kernel / "share" / "jupyter" / "labextensions", *jupyter_path("labextensions")]
+    roots = [str(kernel / "share" / "jupyter" / "labextensions"), *jupyter_path("labextensions")]
     places = [Path(root, name) for root in roots]
     found = next((place for place in places if (place / "package.json").is_file()), None)
     if found is None:
