@@ -76,7 +76,12 @@ async function render({ model, el }) {
 
   async function gather() {
     const turn = ++gathering, plan = model.get("plan");
-    const nodes = await resolve(model.widget_manager, model.get("nodes"));
+    let nodes;
+    try {
+      nodes = await resolve(model.widget_manager, model.get("nodes"));
+    } catch {
+      return; // the scene was closed meanwhile, and what it moved has gone
+    }
     if (turn !== gathering || plan.length !== nodes.length) return; // there is news already
     movers = plan.map((one, i) => (Array.isArray(one) ? parts : whole)(nodes[i].obj, one));
     rows = model.get("rows");

@@ -8,7 +8,7 @@ const STYLE = `
 .ikteach-said[role=status] { min-height: 1.4em; }
 .ikteach-said[role=alert]:not(:empty) { border-left: 4px solid #d55e00; padding-left: 8px; }`;
 const NEAR = { mouse: 18, pen: 22, touch: 32 }; // [pixels] from a target's middle that still hit it
-const LATE = 600; // [ms] after which a target goes where the kernel says
+const LATE = 2000; // [ms] after which a target goes where the kernel says, if that is elsewhere
 const TURN = 0.1, ZOOM = 1.1; // one key press: of the camera [rad], of its distance
 const KEYS = { ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0], ArrowDown: [0, -1, 0],
                ArrowUp: [0, 1, 0], PageDown: [0, 0, 1], PageUp: [0, 0, -1] };

@@ -42,6 +42,7 @@ def press(reach: Notebook, key: str, times: int, axis: int, to: float) -> None:
     for _ in range(times):
         reach.page.keyboard.press(key)
     settle(reach, f"round(float({SESSION}.cursor[{axis}]), 6)", to)
+    drawn(reach)
 
 
 def drawn(reach: Notebook) -> None:
