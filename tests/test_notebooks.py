@@ -1,4 +1,4 @@
-"""Every notebook, in both builds, runs in a fresh kernel, forwards and then backwards, cleanly."""
+"""Every notebook runs cleanly in a fresh kernel: forwards, backwards, and with its solutions."""
 
 import ast
 import asyncio
@@ -22,52 +22,45 @@ def test_there_are_notebooks() -> None:
     assert NOTEBOOKS
 
 
-def built(path: Path, build: str) -> Any:
-    """The notebook of that build; a student's goes on from its end back to its start."""
+def story(path: Path) -> Any:
+    """The student's notebook, then once more from its end to its start, then the instructor's."""
     notebook = builds.clean(nbformat.read(path, as_version=4))
-    if build == "instructor":
-        return builds.with_solutions(notebook)
-    again = copy.deepcopy([cell for cell in notebook.cells if cell.cell_type == "code"])
-    for cell in again:
-        cell.id += "-again"
-    notebook.cells += again[::-1]
+    solved = builds.with_solutions(copy.deepcopy(notebook))
+    later = {"again": notebook.cells[::-1], "solved": solved.cells}
+    for name, cells in later.items():
+        for cell in copy.deepcopy([cell for cell in cells if cell.cell_type == "code"]):
+            cell.id += f"-{name}"
+            notebook.cells.append(cell)
     return notebook
-
-
-Run = tuple[Path, str]
 
 
 @pytest.fixture(scope="module")
 def runs(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
-) -> dict[Run, Any]:
-    """What is asked for of each notebook and build: the notebook as it was run, or what went wrong.
-
-    Two run at a time.
-    """
-    wanted = [item.callspec.params for item in request.session.items if hasattr(item, "callspec")]
-    pairs = dict.fromkeys((p["path"], p["build"]) for p in wanted if {"path", "build"} <= set(p))
+) -> dict[Path, Any]:
+    """Each notebook that is asked for as it was run, or what went wrong. Two run at a time."""
+    asked = [item for item in request.session.items if "runs" in getattr(item, "fixturenames", ())]
+    paths = dict.fromkeys(item.callspec.params["path"] for item in asked)
     places = asyncio.Semaphore(2)
 
-    async def run(pair: Run) -> Any:
+    async def run(path: Path) -> Any:
         folder = tmp_path_factory.mktemp("run")
         async with places:
             try:
-                return await runner(built(*pair), folder, timeout=60).async_execute()
+                return await runner(story(path), folder, timeout=60).async_execute()
             except RuntimeError:  # the kernel did not come up: another one took its port
-                return await runner(built(*pair), folder, timeout=60).async_execute()
+                return await runner(story(path), folder, timeout=60).async_execute()
 
     async def run_all() -> list[Any]:
-        return await asyncio.gather(*map(run, pairs), return_exceptions=True)
+        return await asyncio.gather(*map(run, paths), return_exceptions=True)
 
-    return dict(zip(pairs, asyncio.run(run_all()), strict=True))
+    return dict(zip(paths, asyncio.run(run_all()), strict=True))
 
 
 @pytest.mark.filterwarnings("ignore:Proactor event loop:RuntimeWarning")
-@pytest.mark.parametrize("build", ["student", "instructor"])
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_runs_without_errors_or_warnings(path: Path, build: str, runs: Any) -> None:
-    notebook = runs[path, build]
+def test_runs_without_errors_or_warnings(path: Path, runs: Any) -> None:
+    notebook = runs[path]
     if isinstance(notebook, BaseException):
         raise notebook
     for cell in notebook.cells:
