@@ -2,12 +2,16 @@
 
 import logging
 import secrets
+import shutil
+import signal
 import threading
 import webbrowser
 from pathlib import Path
 from typing import Any
 
 from jupyter_client.kernelspec import KernelSpec, KernelSpecManager
+from jupyter_core.utils import run_sync
+from tornado.ioloop import IOLoop
 from tornado.web import RedirectHandler
 from tornado.websocket import WebSocketClosedError
 from traitlets.config import Config
@@ -118,7 +122,15 @@ class Lecture(Voila):  # type: ignore[misc]
             lambda record: not (record.exc_info and record.exc_info[0] is WebSocketClosedError)
         )
         logging.getLogger("tornado").setLevel(logging.ERROR)
+        # As an exception, Ctrl-C may land in some callback that survives it; this is only noted.
+        self.ioloop = IOLoop.current()
+        signal.signal(signal.SIGINT, self._handle_signal_stop)
         super().start()
+
+    def stop(self) -> None:
+        """End all kernels at once: there is nothing of the visitors' to be kept."""
+        shutil.rmtree(self.connection_dir, ignore_errors=True)
+        run_sync(self.kernel_manager.shutdown_all)(now=True)
 
     def launch_browser(self) -> None:
         """Say where the first page is, now that the port is known, and open it."""
