@@ -1,5 +1,6 @@
 """One kernel and its pages: two that look at once, one that comes again, none any more."""
 
+import shutil
 import time
 from collections.abc import Iterator
 from typing import Any
@@ -11,7 +12,7 @@ from tests.browser.conftest import READY, Lab, Notebook
 from tests.browser.test_gait import DRIVER, frames, settle
 from tests.browser.test_workbench import LOOPS, press
 
-NAME = "09_workbench.ipynb"
+NAME = "tabs.ipynb"  # a copy, for it is saved with its output
 FRAME = f"+document.querySelector('{DRIVER}').dataset.frame"
 WATCH = f"""
 import asyncio, pathlib
@@ -26,8 +27,9 @@ watching = asyncio.ensure_future(watch())
 
 
 @pytest.fixture(scope="module")
-def first(open_notebook: Any) -> Iterator[Notebook]:
+def first(lab: Lab, open_notebook: Any) -> Iterator[Notebook]:
     """A page in which the workbench has played, in a notebook that has been saved with it."""
+    shutil.copy(lab.folder / "09_workbench.ipynb", lab.folder / NAME)
     notebook = open_notebook(NAME)
     notebook.run_cell("bench = Workbench()")
     notebook.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)

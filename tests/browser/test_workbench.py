@@ -324,8 +324,3 @@ def test_quit_stops_every_loop_and_says_so(bench: Notebook) -> None:
     bench.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
     frames(bench, 5)
     assert bench.kernel(LOOPS) == 1
-    # JupyterLab may just have begun to show the old output again, whose widgets then are gone.
-    late = [error for error in bench.errors if "model not found" in error and "renderM" in error]
-    assert len(late) <= 1
-    for error in late:
-        bench.errors.remove(error)
