@@ -16,7 +16,7 @@ from ikteach.motion.gait import WOUND, displayed, running, walking
 from ikteach.motion.reachable import nearest
 
 TREE, EFFECTORS = figures.human()
-CYCLE = 8  # times over one cycle
+CYCLE = 12  # times over one cycle
 
 
 def by_least_squares(i, target, starts=4):
