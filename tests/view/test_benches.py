@@ -83,6 +83,20 @@ def test_the_arm_steps_downhill_and_starts_again() -> None:
     bench.close()
 
 
+@pytest.mark.parametrize("make", [CapPlayer, Race])
+def test_every_control_of_a_player_to_both_ends(make: Any) -> None:
+    player = make()
+    for control in player.controls.values():
+        before = control.value
+        for end in ends(control) if hasattr(control, "min") else control.options:
+            control.value = end
+            player.refresh()
+            assert player.status.wrong == ""
+            assert len(player.words) > 20
+        control.value = before
+    player.close()
+
+
 def test_the_cap_player_obeys() -> None:
     player = CapPlayer()
     session = player.player.session
