@@ -9,8 +9,8 @@ import sys
 from pathlib import Path
 from urllib.parse import quote
 
+from ikteach.course import ports
 from ikteach.course.opening import Course, chapters, deliver, find_course, told
-from ikteach.course.ports import hindrance, port_number
 
 PACKAGE = Path(__file__).resolve().parent
 
@@ -44,7 +44,6 @@ def main(argv: list[str] | None = None) -> int:
 
 def parse(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
     """Our options, and those for JupyterLab: what follows `--`."""
-    split = argv.index("--") if "--" in argv else len(argv)
     parser = argparse.ArgumentParser(
         prog="python -m ikteach",
         usage="%(prog)s [FOLDER] [--no-browser] [--port N] [--list] [-- JUPYTERLAB OPTIONS]\n"
@@ -63,11 +62,9 @@ def parse(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
         help="copy the notebooks there and open the copy; a file that you have changed is never "
         "overwritten (default: ./ikteach-course, or in a clone its own notebooks, uncopied)",
     )
-    parser.add_argument("--no-browser", action="store_true", help="print the address only")
-    parser.add_argument("--port", metavar="N", type=port_number, help="use exactly this port")
     parser.add_argument("--list", action="store_true", help="print the chapters and end")
-    options = parser.parse_args(argv[:split])
-    return options, ["--no-browser"] * options.no_browser + argv[split + 1 :]
+    options, extra = ports.parse(parser, argv)
+    return options, ["--no-browser"] * options.no_browser + extra
 
 
 def open_course(course: Course, options: argparse.Namespace, extra: list[str]) -> int:
@@ -79,7 +76,7 @@ def open_course(course: Course, options: argparse.Namespace, extra: list[str]) -
         width = max(map(len, titles))
         print(*(f"{name:{width}}  {title}" for name, title in titles.items()), sep="\n")
         return 0
-    if reason := hindrance("JupyterLab", "jupyterlab", "lab", options.port):
+    if reason := ports.hindrance("JupyterLab", "jupyterlab", "lab", options.port):
         return refuse(reason)
     folder = prepare(course, options.folder)
     first = next(iter(titles))
@@ -96,7 +93,7 @@ def open_lecture(argv: list[str]) -> int:
     from ikteach.course import lecture
 
     options, extra = lecture.parse(argv)
-    if reason := hindrance("Voilà", "voila", "lecture", options.port):
+    if reason := ports.hindrance("Voilà", "voila", "lecture", options.port):
         return refuse(reason)
     os.environ.update(lab_environment(find_course(PACKAGE)))
     return lecture.show(options, extra)

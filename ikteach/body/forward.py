@@ -59,10 +59,11 @@ def locate(frames: Frames, effectors: Effectors) -> Array:
 def _in_parent(tree: Tree, theta: Array) -> Array:
     """[R p v; 0 1 0] of each joint in its parent's frame, (..., n, 4, 5), in the plan's order."""
     plan = tree.plan
-    theta = theta.take(plan.order, axis=-1)[..., None, None]
-    T = np.sin(theta) * plan.turn
-    T += np.cos(theta) * plan.across
-    T += plan.along
+    theta = theta.take(plan.order, axis=-1)
+    x = np.empty((*theta.shape, 3 + plan.slides))  # 1, sin θ, cos θ and, for slides, θ
+    x[..., 0] = 1
+    np.sin(theta, out=x[..., 1])
+    np.cos(theta, out=x[..., 2])
     if plan.slides:
-        T += theta * plan.travel
-    return T
+        x[..., 3] = theta
+    return np.vecmat(x, plan.terms).reshape(*theta.shape, 4, 5)

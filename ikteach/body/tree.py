@@ -175,18 +175,16 @@ class Plan:
     rank    (n,)         its inverse: the row of joint j
     climbs               for 1, 2, 4, 8 …: the rows that have so many joints above them (they are
                          the last ones), and the row that stands so many above each of them
-    along, turn, across, travel  (n, 4, 5)  in the plan's order: what 1, sin θ, cos θ and θ are
-                         multiplied by in [R p v; 0 1 0], each joint in its parent's frame
-    slides               True if `travel` is not all zero
+    terms   (n, 3, 20)   in the plan's order: what 1, sin θ and cos θ are multiplied by to make
+                         [R p v; 0 1 0] (4, 5), each joint in its parent's frame; (n, 4, 20) with
+                         θ itself if there are slides
+    slides               whether there are
     """
 
     order: Index
     rank: Index
     climbs: tuple[tuple[slice, Index], ...]
-    along: Array
-    turn: Array
-    across: Array
-    travel: Array
+    terms: Array
     slides: bool
 
     @classmethod
@@ -201,21 +199,18 @@ class Plan:
             rows = slice(int((depth <= height).sum()), None)
             if above := [rank[chains[joint][height]] for joint in order[rows]]:
                 climbs.append((rows, frozen(above, np.intp)))
-        along, turn, across, travel = (frozen(term[order]) for term in _terms(tree))
+        slides = bool(tree.slide.any())
         return cls(
             order=frozen(order, np.intp),
             rank=frozen(rank, np.intp),
             climbs=tuple(climbs),
-            along=along,
-            turn=turn,
-            across=across,
-            travel=travel,
-            slides=bool(tree.slide.any()),
+            terms=frozen(_terms(tree)[order, : 3 + slides]),
+            slides=slides,
         )
 
 
 def _terms(tree: Tree) -> Array:
-    """(4, n, 4, 5): what 1, sin θ, cos θ and θ are multiplied by in [R p v; 0 1 0]."""
+    """(n, 4, 20): what 1, sin θ, cos θ and θ are multiplied by in [R p v; 0 1 0]."""
     v, slide = tree.axes, tree.slide[:, None, None]
     vvT = v[:, :, None] * v[:, None, :]
     terms = np.zeros((4, len(tree), 4, 5))
@@ -225,7 +220,7 @@ def _terms(tree: Tree) -> Array:
     turn[:, :3, :3] = np.where(slide, 0, skew(v))
     across[:, :3, :3] = np.where(slide, 0, np.eye(3) - vvT)
     travel[:, :3, 3] = np.where(tree.slide[:, None], v, 0)
-    return terms
+    return terms.swapaxes(0, 1).reshape(len(tree), 4, 20)
 
 
 def skew(v: Array) -> Array:

@@ -1,9 +1,22 @@
-"""What must hold before a server is started, in sentences."""
+"""What every server of ours is told on the command line, and what must hold before it starts."""
 
 import argparse
 import errno
 import importlib.util
 import socket
+
+
+def parse(
+    parser: argparse.ArgumentParser, argv: list[str]
+) -> tuple[argparse.Namespace, list[str]]:
+    """The options of `parser` and those of every server; and what the server's own program gets.
+
+    The latter is what follows `--`.
+    """
+    parser.add_argument("--no-browser", action="store_true", help="print the address only")
+    parser.add_argument("--port", metavar="N", type=port_number, help="use exactly this port")
+    split = argv.index("--") if "--" in argv else len(argv)
+    return parser.parse_args(argv[:split]), argv[split + 1 :]
 
 
 def port_number(text: str) -> int:

@@ -6,17 +6,13 @@ Reports poses shown a second, the frames under way, and the time from a key on t
 the first pose drawn that knows of it. Trust it on a machine that does nothing else.
 """
 
-import shutil
 import statistics
 import sys
-import tempfile
 import time
 from pathlib import Path
 
-from playwright.sync_api import sync_playwright
-
 sys.path.insert(0, str(Path(__file__).parents[2]))
-from tests.browser.conftest import READY, ROOT, Lab, Notebook, open_browser
+from tests.browser.conftest import READY, Notebook, lab_and_page
 
 DRIVER = "document.querySelector('.ikteach-driver').dataset"
 MOVES = 40
@@ -35,21 +31,13 @@ MOVE = f"""key => new Promise(done => {{
 
 def main(seconds: float) -> None:
     """Start everything, let it run, move the slider, and print what came of it."""
-    with tempfile.TemporaryDirectory() as folder, sync_playwright() as play:
-        shutil.copytree(ROOT / "notebooks", folder, dirs_exist_ok=True)
-        lab = Lab(Path(folder))
-        try:
-            lab.wait()
-            page = open_browser(play).new_page(viewport={"width": 1440, "height": 1100})
-            notebook = Notebook(page, lab, "07_gait.ipynb")
-            began = time.monotonic()
-            notebook.run_cell("player = GaitPlayer()")
-            page.wait_for_selector(".ikteach-driver[data-frame]", timeout=READY)
-            print(f"first pose {time.monotonic() - began:.1f} s after the cell was run")
-            measure(notebook, seconds)
-        finally:
-            lab.stop_kernels()
-            lab.stop()
+    with lab_and_page() as (lab, page):
+        notebook = Notebook(page, lab, "07_gait.ipynb")
+        began = time.monotonic()
+        notebook.run_cell("player = GaitPlayer()")
+        page.wait_for_selector(".ikteach-driver[data-frame]", timeout=READY)
+        print(f"first pose {time.monotonic() - began:.1f} s after the cell was run")
+        measure(notebook, seconds)
 
 
 def measure(notebook: Notebook, seconds: float) -> None:

@@ -7,16 +7,12 @@ cell has been run again, after quit, and when the notebook has been closed. `--f
 of so many minutes pass without waiting for the clock; the page draws what it can of them.
 """
 
-import shutil
 import sys
-import tempfile
 import time
 from pathlib import Path
 
-from playwright.sync_api import sync_playwright
-
 sys.path.insert(0, str(Path(__file__).parents[2]))
-from tests.browser.conftest import READY, ROOT, Lab, Notebook, open_browser
+from tests.browser.conftest import READY, Notebook, lab_and_page
 
 RATE = 30  # ticks of a second
 WARM = 4000  # ticks: the record holds 3,000
@@ -51,30 +47,22 @@ FAST = "live.monotonic = lambda: 1000 * monotonic()"  # always late, and so no t
 
 def main(minutes: float, fast: bool) -> None:
     """Let it run, then end it in every way, and print what is left."""
-    with tempfile.TemporaryDirectory() as folder, sync_playwright() as play:
-        shutil.copytree(ROOT / "notebooks", folder, dirs_exist_ok=True)
-        lab = Lab(Path(folder))
-        try:
-            lab.wait()
-            page = open_browser(play).new_page(viewport={"width": 1440, "height": 1100})
-            notebook = Notebook(page, lab, "09_workbench.ipynb")
-            run_cell(notebook)
-            notebook.kernel("None", WATCH + (FAST if fast else ""))
-            grow(notebook, round(minutes * 60 * RATE))
-            notebook.kernel("None", "live.monotonic = monotonic")
-            left(notebook, "playing")
-            run_cell(notebook)
-            left(notebook, "after the cell was run again")
-            page.get_by_role("button", name="Quit", exact=True).first.click()
-            left(notebook, "after quit")
-            run_cell(notebook)
-            page.goto("about:blank")
-            time.sleep(14)  # longer than `driver.PATIENCE`
-            print("notebook closed:", (lab.folder / "left.txt").read_text())
-            print(f"errors in the page: {notebook.errors or 'none'}")
-        finally:
-            lab.stop_kernels()
-            lab.stop()
+    with lab_and_page() as (lab, page):
+        notebook = Notebook(page, lab, "09_workbench.ipynb")
+        run_cell(notebook)
+        notebook.kernel("None", WATCH + (FAST if fast else ""))
+        grow(notebook, round(minutes * 60 * RATE))
+        notebook.kernel("None", "live.monotonic = monotonic")
+        left(notebook, "playing")
+        run_cell(notebook)
+        left(notebook, "after the cell was run again")
+        page.get_by_role("button", name="Quit", exact=True).first.click()
+        left(notebook, "after quit")
+        run_cell(notebook)
+        page.goto("about:blank")
+        time.sleep(14)  # longer than `driver.PATIENCE`
+        print("notebook closed:", (lab.folder / "left.txt").read_text())
+        print(f"errors in the page: {notebook.errors or 'none'}")
 
 
 def run_cell(notebook: Notebook) -> None:

@@ -10,15 +10,13 @@ a machine that does nothing else. The bars: one figure 30 and 50, four figures 2
 
 import statistics
 import sys
-import tempfile
 import time
 from pathlib import Path
 
 import nbformat
-from playwright.sync_api import sync_playwright
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
-from tests.browser.conftest import READY, Lab, Notebook, open_browser
+from tests.browser.conftest import READY, Notebook, lab_and_page
 
 DRIVER = "document.querySelector('.ikteach-driver').dataset"
 MOVES = 40
@@ -103,37 +101,30 @@ spot = (seen[:2] / -seen[2]).tolist()
 
 def main(seconds: float) -> None:
     """Start everything, and print what one figure and four figures reach."""
-    with tempfile.TemporaryDirectory() as folder, sync_playwright() as play:
+    with lab_and_page() as (lab, page):
         counts = ["build(1)", "build(4)"]
         cells = [nbformat.v4.new_code_cell(cell) for cell in (CELL, *counts)]
         book = nbformat.v4.new_notebook(cells=cells)
         book.metadata.kernelspec = {"name": "python3", "display_name": "Python 3"}
-        nbformat.write(book, Path(folder) / "scene.ipynb")
-        lab = Lab(Path(folder))
-        try:
-            lab.wait()
-            page = open_browser(play).new_page(viewport={"width": 1440, "height": 1100})
-            page.add_init_script(NOTE)
-            notebook = Notebook(page, lab, "scene.ipynb")
-            notebook.run_cell("import asyncio")
-            for cell in counts:
-                began = time.monotonic()
-                notebook.run_cell(cell)
-                page.wait_for_selector(".ikteach-driver[data-frame]", timeout=READY)
-                page.wait_for_selector(".ikteach-stage", timeout=READY)
-                print(f"{cell}: shown after {time.monotonic() - began:.1f} s")
-                drag(notebook)
-                for asked in (30, 60):
-                    rate(notebook, seconds, asked, "plain")
-                notebook.kernel("None", "[scene.switch(layer) for layer in LAYERS]")
-                for asked in (30, 60):
-                    rate(notebook, seconds, asked, "every layer")
-                stop(notebook)
-                page.locator(".jp-OutputArea-output").first.evaluate("one => one.remove()")
-            print(f"errors in the page: {notebook.errors or 'none'}")
-        finally:
-            lab.stop_kernels()
-            lab.stop()
+        nbformat.write(book, lab.folder / "scene.ipynb")
+        page.add_init_script(NOTE)
+        notebook = Notebook(page, lab, "scene.ipynb")
+        notebook.run_cell("import asyncio")
+        for cell in counts:
+            began = time.monotonic()
+            notebook.run_cell(cell)
+            page.wait_for_selector(".ikteach-driver[data-frame]", timeout=READY)
+            page.wait_for_selector(".ikteach-stage", timeout=READY)
+            print(f"{cell}: shown after {time.monotonic() - began:.1f} s")
+            drag(notebook)
+            for asked in (30, 60):
+                rate(notebook, seconds, asked, "plain")
+            notebook.kernel("None", "[scene.switch(layer) for layer in LAYERS]")
+            for asked in (30, 60):
+                rate(notebook, seconds, asked, "every layer")
+            stop(notebook)
+            page.locator(".jp-OutputArea-output").first.evaluate("one => one.remove()")
+        print(f"errors in the page: {notebook.errors or 'none'}")
 
 
 def rate(notebook: Notebook, seconds: float, asked: int, what: str) -> None:

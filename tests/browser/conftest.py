@@ -7,10 +7,12 @@ import shutil
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -148,14 +150,34 @@ def open_browser(play: Any) -> Browser:
     return play.chromium.launch(executable_path=system, args=FLAGS, headless=True)
 
 
-@pytest.fixture(scope="session")
-def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lab]:
-    folder = tmp_path_factory.mktemp("course")
+@contextmanager
+def course_in_lab(folder: Path) -> Iterator[Lab]:
+    """JupyterLab on a copy of the course."""
     shutil.copytree(ROOT / "notebooks", folder, dirs_exist_ok=True)
     lab = Lab(folder)
-    lab.wait()
-    yield lab
-    lab.stop()
+    try:
+        lab.wait()
+        yield lab
+        lab.stop_kernels()
+    finally:
+        lab.stop()
+
+
+@contextmanager
+def lab_and_page() -> Iterator[tuple[Lab, Page]]:
+    """The course in JupyterLab and an empty page, for a bench."""
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        course_in_lab(Path(folder)) as lab,
+        sync_playwright() as play,
+    ):
+        yield lab, open_browser(play).new_page(viewport={"width": 1440, "height": 1100})
+
+
+@pytest.fixture(scope="session")
+def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lab]:
+    with course_in_lab(tmp_path_factory.mktemp("course")) as lab:
+        yield lab
 
 
 @pytest.fixture(scope="session")
@@ -185,4 +207,3 @@ def open_notebook(lab: Lab, browser: Browser) -> Iterator[Any]:
     yield open_one
     for page in pages:
         page.close()
-    lab.stop_kernels()

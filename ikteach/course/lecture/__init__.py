@@ -10,8 +10,8 @@ import socket
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ikteach.course import ports
 from ikteach.course.opening import deliver, told
-from ikteach.course.ports import port_number
 
 if TYPE_CHECKING:
     from ikteach.view.workbench import Workbench
@@ -24,7 +24,6 @@ ROOM = "IKTEACH_ROOM"  # set for the kernels when others than the lecturer may o
 
 def parse(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
     """Our options, and those for Voilà: what follows `--`."""
-    split = argv.index("--") if "--" in argv else len(argv)
     parser = argparse.ArgumentParser(
         prog="python -m ikteach lecture",
         usage="%(prog)s [FOLDER] [--room] [--no-browser] [--port N] [-- VOILÀ OPTIONS]",
@@ -46,9 +45,7 @@ def parse(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
         action="store_true",
         help="others in this network may open the pages, with the address that is printed",
     )
-    parser.add_argument("--no-browser", action="store_true", help="print the address only")
-    parser.add_argument("--port", metavar="N", type=port_number, help="use exactly this port")
-    return parser.parse_args(argv[:split]), argv[split + 1 :]
+    return ports.parse(parser, argv)
 
 
 def show(options: argparse.Namespace, extra: list[str]) -> int:
