@@ -6,9 +6,7 @@ import importlib.util
 import socket
 
 
-def parse(
-    parser: argparse.ArgumentParser, argv: list[str]
-) -> tuple[argparse.Namespace, list[str]]:
+def parse(parser: argparse.ArgumentParser, argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
     """The options of `parser` and those of every server; and what the server's own program gets.
 
     The latter is what follows `--`.

@@ -18,7 +18,7 @@ from pathlib import Path
 from playwright.sync_api import Browser, Page, sync_playwright
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
-from tests.browser.conftest import READY, ROOT, Lab, Notebook, open_browser
+from tests.browser.conftest import READY, ROOT, Lab, Notebook, open_browser, open_page
 from tests.browser.test_gait import SHOWN
 from tests.browser.test_lecture import Lecture
 
@@ -55,7 +55,7 @@ def main(rounds: int) -> None:
 
 def opened(browser: Browser, way: Callable[[Page], Page]) -> float:
     """The seconds until a second frame is on the screen."""
-    page = browser.new_page(viewport={"width": 1280, "height": 900})
+    page = open_page(browser, 1280, 900)
     began = time.monotonic()
     way(page).wait_for_function(
         f"document.querySelector('.ikteach-driver')?.dataset.shown && {SHOWN} >= 2",

@@ -150,6 +150,15 @@ def open_browser(play: Any) -> Browser:
     return play.chromium.launch(executable_path=system, args=FLAGS, headless=True)
 
 
+def open_page(browser: Browser, width: int = 1440, height: int = 1100) -> Page:
+    """An empty page, of a profile of its own."""
+    page = browser.new_page(viewport={"width": width, "height": height})
+    # pythreejs notes every frame in the console. Where nobody looks that costs nothing, but
+    # Playwright looks: each note would be sent from process to process to process.
+    page.add_init_script("console.debug = () => {}")
+    return page
+
+
 @contextmanager
 def course_in_lab(folder: Path) -> Iterator[Lab]:
     """JupyterLab on a copy of the course."""
@@ -171,7 +180,7 @@ def lab_and_page() -> Iterator[tuple[Lab, Page]]:
         course_in_lab(Path(folder)) as lab,
         sync_playwright() as play,
     ):
-        yield lab, open_browser(play).new_page(viewport={"width": 1440, "height": 1100})
+        yield lab, open_page(open_browser(play))
 
 
 @pytest.fixture(scope="session")
@@ -200,9 +209,8 @@ def open_notebook(lab: Lab, browser: Browser) -> Iterator[Any]:
         lab.stop_kernels()
         while pages:  # a page that is left open goes on drawing
             pages.pop().close()
-        page = browser.new_page(viewport={"width": 1440, "height": 1100})
-        pages.append(page)
-        return Notebook(page, lab, name)
+        pages.append(open_page(browser))
+        return Notebook(pages[-1], lab, name)
 
     yield open_one
     for page in pages:

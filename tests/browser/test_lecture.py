@@ -15,7 +15,7 @@ from urllib.parse import urlsplit
 import pytest
 from playwright.sync_api import Browser, Page, Request, Route
 
-from tests.browser.conftest import READY, SHOTS
+from tests.browser.conftest import READY, SHOTS, open_page
 from tests.browser.test_gait import CANVAS, DRIVER, SHOWN, pixels
 
 KERNEL = r'"kernelId": ?"([\w-]+)"'
@@ -58,7 +58,7 @@ class Lecture:
         self.address, self.site, self.token = found.group(0, 1, 2)
         self.errors: list[str] = []
         self.outside: list[str] = []
-        self.page = browser.new_page(viewport={"width": 1280, "height": 720})
+        self.page = open_page(browser, 1280, 720)
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
         self.page.on("console", lambda m: self.errors.append(m.text) if m.type == "error" else None)
         self.page.route("**/*", self._let_in)

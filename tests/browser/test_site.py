@@ -21,7 +21,7 @@ from ikteach import __main__ as cli
 from ikteach.course import site, wheels
 from ikteach.course.opening import chapters, course_files
 from tests import pyodide
-from tests.browser.conftest import READY, ROOT, SHOTS
+from tests.browser.conftest import READY, ROOT, SHOTS, open_page
 
 NOTEBOOKS = ROOT / "notebooks"
 START = 150_000  # [ms] what a kernel may take to start on a slow machine
@@ -82,7 +82,7 @@ class Lite:
         self.address = f"http://127.0.0.1:{self.server.server_port}/"
         self.outside: list[str] = []
         self.errors: list[str] = []
-        self.page: Page = browser.new_page(viewport={"width": 1440, "height": 1000})
+        self.page: Page = open_page(browser, 1440, 1000)
         self.page.context.route("**/*", self._let_through)
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
         self.page.on("console", self._heard)

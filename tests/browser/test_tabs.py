@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser
 
-from tests.browser.conftest import READY, Lab, Notebook
+from tests.browser.conftest import READY, Lab, Notebook, open_page
 from tests.browser.test_gait import DRIVER, frames, settle
 from tests.browser.test_workbench import LOOPS, press
 
@@ -43,11 +43,10 @@ def first(lab: Lab, open_notebook: Any) -> Iterator[Notebook]:
 @pytest.fixture(scope="module")
 def second(first: Notebook, lab: Lab, browser: Browser) -> Iterator[Notebook]:
     """Another page with the same notebook, on the same kernel: it shows the pose without a cell."""
-    context = browser.new_context(viewport={"width": 1440, "height": 1100})
-    notebook = Notebook(context.new_page(), lab, NAME)
+    notebook = Notebook(open_page(browser), lab, NAME)
     notebook.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=2 * READY)
     yield notebook
-    context.close()
+    notebook.page.close()
     assert notebook.errors == []
 
 
