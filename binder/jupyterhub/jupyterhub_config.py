@@ -44,8 +44,14 @@ c.Spawner.args = [
     "--LabApp.news_url=None",
     "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate",
 ]
-# Matrices of a figure are small: more threads only make the students wait for one another.
-c.Spawner.environment = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+c.Spawner.environment = {
+    # Matrices of a figure are small: more threads only make the students wait for one another.
+    "OMP_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+    # Kernels, which make frames, give way to servers and proxy, which deliver them (kernels/):
+    # where the machine is too small for a class, there are fewer frames, and none come late.
+    "JUPYTER_PATH": str(HERE),
+}
 c.Spawner.start_timeout = c.Spawner.http_timeout = 180  # [s] a whole class logs in at once
 
 # Limits. A server takes about 110 MB, and each open chapter about as much again. It is the spawner

@@ -33,37 +33,18 @@ class Event(NamedTuple):
 
 
 class Moment(NamedTuple):
-    """One tick in which poses followed.
+    """One tick in which poses followed: a row of a `Log`, which says what the names mean."""
 
-    time     gait time [s]
-    targets  (k, 3) [m]
-    done     {method: what it did}
-    tick     how many ticks of the clock had passed
-    phase    argument of the gait's sine [rad]
-    advance  how far the figure had gone [m]
-    floor    height of the ground under the pelvis [m]
-    shown    the method that was shown
-    """
-
-    time: float
-    targets: Array
-    done: Mapping[str, "Tick"]
     tick: int
+    time: float
     phase: float
     advance: float
     floor: float
-    shown: str
-
-
-class Tick(NamedTuple):
-    """What one method did in one tick.
-
-    theta (n,) [rad], error (k,) [m], whether the cap shortened the step, held (n,) by limits
-    """
-
+    shown: int
+    targets: Array
     theta: Array
     error: Array
-    capped: bool
+    capped: Mask
     held: Mask
 
 
@@ -116,25 +97,15 @@ class Log:
     ) -> "Log":  # fmt: skip
         """The log of these moments; `others` are its events, settings and dropped."""
         T, m, n, k = len(moments), len(methods), len(tree), len(effectors)
-        place = {name: i for i, name in enumerate(methods)}
-
-        def each(what: str, dtype: Any = float, shape: tuple[int, ...] = ()) -> Any:
-            values = [getattr(moment, what) for moment in moments]
-            return np.array(values, dtype=dtype).reshape(T, *shape)
-
-        def by_method(what: str, dtype: Any = float, shape: tuple[int, ...] = ()) -> Any:
-            values = [[getattr(row.done[name], what) for name in methods] for row in moments]
-            return np.array(values, dtype=dtype).reshape(T, m, *shape)
-
-        return cls(
-            tree, effectors, dt, tuple(methods),
-            tick=each("tick", np.int64), time=each("time"), phase=each("phase"),
-            advance=each("advance"), floor=each("floor"),
-            shown=np.array([place[row.shown] for row in moments], dtype=np.int64),
-            targets=each("targets", shape=(k, 3)), theta=by_method("theta", shape=(n,)),
-            error=by_method("error", shape=(k,)), capped=by_method("capped", bool),
-            held=by_method("held", bool, (n,)), **others,
-        )  # fmt: skip
+        shapes = {"targets": (k, 3), "theta": (m, n), "error": (m, k), "capped": (m,)}
+        shapes |= {"held": (m, n)}
+        kinds: dict[str, Any] = {"tick": np.int64, "shown": np.int64, "capped": bool, "held": bool}
+        columns = zip(*moments, strict=True) if moments else [()] * len(Moment._fields)
+        arrays: dict[str, Any] = {
+            name: np.array(column, dtype=kinds.get(name, float)).reshape(T, *shapes.get(name, ()))
+            for name, column in zip(Moment._fields, columns, strict=True)
+        }
+        return cls(tree, effectors, dt, tuple(methods), **arrays, **others)
 
     @classmethod
     def of_tracks(cls, tracks: Mapping[str, Track], *, dt: float = 1 / 30, floor: float) -> "Log":

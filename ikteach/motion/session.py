@@ -9,6 +9,7 @@ from collections import deque
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
+from itertools import islice
 from time import monotonic
 from typing import Any, NamedTuple
 
@@ -18,7 +19,7 @@ from ikteach.arrays import Array, ArrayLike, frozen
 from ikteach.body import forward, locate
 from ikteach.body.figures import Figure, human
 from ikteach.motion.gait import Gait, walking
-from ikteach.motion.log import Event, Log, Moment, Tick
+from ikteach.motion.log import Event, Log, Moment
 from ikteach.motion.mix import Each, Mix
 from ikteach.motion.step import checked, numbers, solver_of, step
 from ikteach.motion.track import Track
@@ -218,17 +219,13 @@ class Session:
             self.tree, poses, self.effectors, self.targets, Each(self.methods.values()),
             mobility=self.gait.mobility(self.tree), **options,
         )  # fmt: skip
-        error = self._distances(to.theta)
-        done = {
-            name: Tick(to.theta[i], error[i], bool(to.capped[i]), to.held[i])
-            for i, name in enumerate(self.methods)
-        }
-        self.theta.update({name: tick.theta for name, tick in done.items()})
+        self.theta.update(zip(self.methods, to.theta, strict=True))
         self.dropped += len(self.record) == self.record.maxlen
+        shown = list(self.methods).index(self.method)
         self.record.append(
             Moment(
-                self.time, self.targets, done, self.ticks, self.phase, self.advance, self.floor,
-                self.method,
+                self.ticks, self.time, self.phase, self.advance, self.floor, shown, self.targets,
+                to.theta, self._distances(to.theta), to.capped, to.held,
             )
         )  # fmt: skip
 
@@ -260,17 +257,13 @@ class Session:
 
         0 in the first two ticks, which have no second difference.
         """
-        rows = self._recent(last + 2)
-        begun = len(rows) < last + 2
-        jitter = {}
-        for name in self.methods:
-            theta = np.array([row.done[name].theta for row in rows]).reshape(
-                len(rows), self.tree.rest.size
-            )
-            if begun:
-                theta = np.concatenate([theta[:1], theta[:1], theta])
-            jitter[name] = np.linalg.norm(np.diff(theta, n=2, axis=0), axis=-1)
-        return jitter
+        poses = [row.theta for row in self._recent(last + 2)]
+        if len(poses) < last + 2:
+            poses = [*poses[:1], *poses[:1], *poses]
+        if not poses:
+            return {name: np.zeros(0) for name in self.methods}
+        jitter = np.linalg.norm(np.diff(poses, n=2, axis=0), axis=-1)
+        return dict(zip(self.methods, jitter.T, strict=True))
 
     @property
     def floor(self) -> float:
@@ -305,7 +298,7 @@ class Session:
         }
 
     def _recent(self, last: int | None) -> list[Moment]:
-        return list(self.record)[-last:] if last else list(self.record)
+        return list(islice(reversed(self.record), last))[::-1]
 
     # Behind the changes.
 

@@ -13,7 +13,7 @@ import pythreejs as three
 
 from ikteach.arrays import Array, ArrayLike
 from ikteach.body import Effectors, Tree
-from ikteach.body.rotation import sticks, transforms
+from ikteach.body.rotation import sticks
 from ikteach.names import unknown
 from ikteach.view import flesh, shapes, solids
 from ikteach.view.cameras import Cameras
@@ -55,10 +55,11 @@ class Scene:
         unit, f, n, k = stage.unit, len(names), len(tree), len(effectors)
         # The rows of a frame: grounds (f), floor, joints (f, n), targets (sets, k), gaps (f, k).
         self._sets = 1 if stage.overlaid else f
-        floor, joint = f, f + 1
-        target = joint + f * n
-        gap = target + self._sets * k
-        self._rows = gap + f * k
+        counts = [f, 1, f * n, self._sets * k, f * k]
+        floor, joint, target, gap, self._rows = np.cumsum(counts).tolist()
+        self._blank = np.tile(STILL, (self._rows, 1, 1))  # a frame, but for what moves
+        self._blank[:f, :, 3] = stage.places
+        self._parts = floor, slice(joint, target), slice(target, gap), slice(gap, None)
         self._floor = node([solids.grid(unit, dark)])
         self.targets = solids.marks(effectors.names, unit, self._sets)
         bodies = [self._body(i, i, joint + i * n) for i in range(f)]
@@ -140,22 +141,20 @@ class Scene:
         now = stage.now(theta, targets, floor, advance, effector, columns, ellipsoid, reach)
         places = stage.places[:, None]
         at = now.targets + places
-        marks = at[: self._sets].reshape(-1, 3)
-        upright = np.broadcast_to(np.eye(3), (len(marks), 3, 3))
-        matrices = [
-            transforms(np.broadcast_to(np.eye(3), (len(stage), 3, 3)), stage.places),
-            self._ground(now.floor, advance)[None],
-            transforms(now.orientations, now.positions + places),
-            transforms(upright, marks),
-            sticks(now.effectors + places, at),
-        ]
-        matrices += [layer.place(now) for layer in self._drawn()]
+        ground, joints, marks, gaps = self._parts
+        frame = self._blank.copy()
+        frame[ground] = self._ground(now.floor, advance)
+        frame[joints, :, :3] = now.orientations.reshape(-1, 3, 3)
+        frame[joints, :, 3] = (now.positions + places).reshape(-1, 3)
+        frame[marks, :, 3] = at[: self._sets].reshape(-1, 3)
+        frame[gaps] = sticks(now.effectors + places, at).reshape(-1, 3, 4)
+        layers = [layer.place(now) for layer in self._drawn()]
         self._last = {
             "theta": theta, "targets": targets, "floor": floor, "advance": advance,
             "change": change, "effector": effector, "columns": columns, "ellipsoid": ellipsoid,
             "reach": reach,
         }  # fmt: skip
-        self.driver.show(np.concatenate([m.reshape(-1, 3, 4) for m in matrices]), change)
+        self.driver.show(np.concatenate([frame, *layers]) if layers else frame, change)
 
     def clear(self) -> None:
         """Forget trails and footprints."""

@@ -12,6 +12,7 @@ import anywidget
 import numpy as np
 import traitlets
 
+from ikteach.motion.log import Log
 from ikteach.motion.session import Session
 from ikteach.view.skin import EFFECTOR_COLOURS
 
@@ -64,25 +65,16 @@ class Strips(anywidget.AnyWidget):
         self._run, self._sent = session.runs, session.ticks
         if not (rows or fresh):
             return
-        jitter = session.jitter(len(rows))
-        samples = np.array(
-            [
-                [
-                    row.tick * session.dt,
-                    *row.done[row.shown].error,
-                    *(row.done[name].error.mean() for name in self._methods),
-                    *(np.degrees(jitter[name][i]) for name in self._methods),
-                ]
-                for i, row in enumerate(rows)
-            ],
-            dtype="<f4",
-        )
+        log = Log.of(session.tree, session.effectors, session.dt, self._methods, rows)
+        shown = log.error[np.arange(len(log)), log.shown]
+        mean, jitter = log.error.mean(axis=-1), session.jitter(len(rows))
+        degrees = np.degrees([*jitter.values()]).T
+        samples = np.column_stack([log.clock, shown, mean, degrees]).astype("<f4")
         self.send({"fresh": fresh, "rows": len(rows)}, buffers=[samples.tobytes()])
         if rows and session.ticks % (10 * EVERY) < EVERY:
             self.alt = "Mean distance to target and jitter: " + "; ".join(
-                f"{name} {100 * rows[-1].done[name].error.mean():.1f} cm, "
-                f"{np.degrees(jitter[name][-1]):.2g}°"
-                for name in self._methods
+                f"{name} {100 * far:.1f} cm, {much:.2g}°"
+                for name, far, much in zip(self._methods, mean[-1], degrees[-1], strict=True)
             )
 
 

@@ -36,6 +36,7 @@ DRIVER_JS = (ROOT / "ikteach" / "view" / "driver.js").read_text()
 (REPORT_EVERY,) = map(int, re.findall(r"REPORT_EVERY = (\d+)", DRIVER_JS))
 CELLS = json.loads((ROOT / "notebooks" / "07_gait.ipynb").read_text())["cells"]
 (PLAYER,) = ("".join(cell["source"]) for cell in CELLS if cell["id"] == "player")
+ONE_METHOD = "from ikteach import dls, view; view.GaitPlayer({'dls': dls})"
 
 
 AsyncHTTPClient.configure(None, max_clients=1000)  # a class does not queue
@@ -133,12 +134,13 @@ class Frame(NamedTuple):
 class Student:
     """One student and their page. `frames` are the poses that came, `moving` is set by the first.
 
+    cell      what the student runs
     scene     messages that concern the picture: poses, and whatever else its objects are told
     messages  messages of any kind from the kernel
     """
 
-    def __init__(self, hub: Hub, name: str) -> None:
-        self.hub, self.name = hub, name
+    def __init__(self, hub: Hub, name: str, cell: str = PLAYER) -> None:
+        self.hub, self.name, self.cell = hub, name, cell
         self.frames: list[Frame] = []
         self.scene = self.messages = 0
         self.moving = asyncio.Event()
@@ -168,7 +170,7 @@ class Student:
             subprotocols=[PROTOCOL],
             max_message_size=2**27,
         )
-        code = {"code": PLAYER, "silent": False, "allow_stdin": False, "stop_on_error": True}
+        code = {"code": self.cell, "silent": False, "allow_stdin": False, "stop_on_error": True}
         self._say("execute_request", **code)
         await asyncio.wait_for(self._done.wait(), PATIENCE)
         if self._failed or not self._driver:

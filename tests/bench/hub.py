@@ -1,11 +1,12 @@
 """How many students one machine carries: a JupyterHub and a class that plays chapter 7, simulated.
 
-    python tests/bench/hub.py [--students 20] [--seconds 60] [--table]
+    python tests/bench/hub.py [--students 20] [--seconds 60] [--one] [--table]
 
 The hub is that of binder/jupyterhub, on loopback, and the figure is the player's own. Each student
 answers as a page does whose every frame is drawn at once; they take a share of the machine, which
 is said. A delay is the time from the kernel's making a message to the student's having it, by one
-clock. `--table` plays with 1, 5, 10 and 20 students and prints a table for a document.
+clock. The player compares four methods, with `--one` it has one. `--table` plays with 1, 5, 10 and
+20 students and prints a table for a document.
 
 Trust it on a machine that does nothing else.
 """
@@ -24,7 +25,7 @@ from typing import NamedTuple
 import psutil
 
 sys.path.insert(0, str(Path(__file__).parent))
-from classroom import Hub, Student
+from classroom import ONE_METHOD, PLAYER, Hub, Student
 
 COUNTS = (1, 5, 10, 20)
 RATE, LATE = 25.0, 100.0  # the bar: frames a second for each, and the 95th percentile [ms]
@@ -86,7 +87,8 @@ async def watch(
     await asyncio.sleep(settling)
     servers = hub.servers()
     trees = [[servers[one.name], *servers[one.name].children()] for one in students]
-    rest = [one for one in hub.process.children() if one not in servers.values()]
+    known = [one for tree in trees for one in tree]
+    rest = [one for one in hub.process.children(recursive=True) if one not in known]
     groups = [[tree[0]] for tree in trees] + [tree[1:] for tree in trees]
     groups += [[hub.process, *rest], [psutil.Process()]]
     psutil.cpu_percent()
@@ -152,7 +154,7 @@ HEAD = """\
 |---|---|---|---|---|---|---|---|"""
 
 
-async def main(counts: Sequence[int], seconds: float, table: bool) -> None:
+async def main(counts: Sequence[int], seconds: float, cell: str, table: bool) -> None:
     """Play with ever more students, and print what came of it."""
     students: list[Student] = []
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
@@ -160,7 +162,8 @@ async def main(counts: Sequence[int], seconds: float, table: bool) -> None:
             if table:
                 print(HEAD, flush=True)
             for count in counts:
-                new = [Student(hub, name) for name in list(hub.passwords)[len(students) : count]]
+                names = list(hub.passwords)[len(students) : count]
+                new = [Student(hub, name, cell) for name in names]
                 took = await gather(new)
                 students += new
                 seen = await watch(hub, students, seconds)
@@ -173,7 +176,8 @@ if __name__ == "__main__":
     parser.add_argument("--students", type=int, default=20)
     parser.add_argument("--seconds", type=float, default=60)
     parser.add_argument("--table", action="store_true", help=f"for {COUNTS} students, in markdown")
+    parser.add_argument("--one", action="store_true", help="one method, not four")
     given = parser.parse_args()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit("ended"))  # and the hub with it
     counts = COUNTS if given.table else (given.students,)
-    asyncio.run(main(counts, given.seconds, given.table))
+    asyncio.run(main(counts, given.seconds, ONE_METHOD if given.one else PLAYER, given.table))

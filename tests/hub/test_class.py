@@ -23,6 +23,9 @@ async def lesson(folder):
                 f"/user/{other.name}/api/kernels", await one.log_in(hub.passwords[one.name])
             )
         seen = await bench.watch(hub, students, seconds=2, settling=0.2)
+        for server in hub.servers().values():
+            (kernel,) = server.children()
+            assert kernel.nice() > server.nice()
         assert mine.read_text() == "mine"
         folders = [hub.homes / one.name / "ikteach-course" for one in students]
         return seen, [{file.name for file in folder.iterdir()} for folder in folders]
