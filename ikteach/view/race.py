@@ -34,8 +34,8 @@ class Race(Live):
         step, reset = (widgets.Button(description=words) for words in ("Step", "Reset"))
         self.controls = {
             "caps": choice("caps", [EQUAL, OWN]),
-            "degrees": slider("equal cap [° a step]", degrees, 1.0, 45.0, 0.5),
             "motion": choice("motion", list(gait.MOTIONS)),
+            "degrees": slider("equal cap [° a step]", degrees, 1.0, 45.0, 0.5),
             "speed": slider("speed ω [rad/s]", session.gait.speed, 0.0, 20.0, 0.1),
         }
         step.on_click(self.guarded(lambda _: self.step()))
@@ -44,7 +44,8 @@ class Race(Live):
             control.observe(self.guarded(lambda _, name=name: self._obey(name)), "value")
         self.children = [
             widgets.HBox([self.play_button(), step, reset]),
-            *self.controls.values(),
+            # side by side where there is room, so that figures and curves are seen with them
+            widgets.HBox([*self.controls.values()], layout=widgets.Layout(flex_flow="row wrap")),
             self.status,
             self.scene.widget,
             self.strips,
