@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
-from tests.browser.conftest import READY, Notebook, lab_and_page
+from tests.browser.conftest import Notebook, lab_and_page
 
 DRIVER = "document.querySelector('.ikteach-driver').dataset"
 MOVES = 40
@@ -34,8 +34,7 @@ def main(seconds: float) -> None:
     with lab_and_page() as (lab, page):
         notebook = Notebook(page, lab, "07_gait.ipynb")
         began = time.monotonic()
-        notebook.run_cell("player = GaitPlayer()")
-        page.wait_for_selector(".ikteach-driver[data-frame]", timeout=READY)
+        notebook.run_figure("player = GaitPlayer()")
         print(f"first pose {time.monotonic() - began:.1f} s after the cell was run")
         measure(notebook, seconds)
 

@@ -12,13 +12,12 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
-from tests.browser.conftest import READY, Notebook, lab_and_page
+from tests.browser.conftest import Notebook, lab_and_page
 
 RATE = 30  # ticks of a second
 WARM = 4000  # ticks: the record holds 3,000
 TOLD = 10  # times that the memory is reported
 CELL = "bench = Workbench()"
-DRAWN = ".ikteach-driver[data-frame]"
 WATCH = """
 import asyncio, gc, threading
 from pathlib import Path
@@ -68,8 +67,7 @@ def main(minutes: float, fast: bool) -> None:
 def run_cell(notebook: Notebook) -> None:
     """Run the cell of the workbench, and wait for its picture."""
     notebook.page.evaluate("document.querySelector('.ikteach-driver')?.remove()")
-    notebook.run_cell(CELL)
-    notebook.page.wait_for_selector(DRAWN, timeout=READY)
+    notebook.run_figure(CELL)
 
 
 def left(notebook: Notebook, when: str) -> None:

@@ -18,8 +18,7 @@ from pathlib import Path
 from playwright.sync_api import Browser, Page, sync_playwright
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
-from tests.browser.conftest import READY, ROOT, Lab, Notebook, open_browser, open_page
-from tests.browser.test_gait import SHOWN
+from tests.browser.conftest import READY, ROOT, SHOWN, Lab, Notebook, open_browser, open_page
 from tests.browser.test_lecture import Lecture
 
 

@@ -16,8 +16,7 @@ sys.path[:0] = [str(HERE.parents[2])]
 from playwright.sync_api import TimeoutError as TooLong  # noqa: E402
 from playwright.sync_api import sync_playwright  # noqa: E402
 
-from tests.browser.conftest import open_browser  # noqa: E402
-from tests.browser.test_gait import CANVAS, SHOWN  # noqa: E402
+from tests.browser.conftest import CANVAS, SHOWN, open_browser  # noqa: E402
 from tests.browser.test_site import Lite  # noqa: E402
 
 PATIENCE = 240_000  # [ms]

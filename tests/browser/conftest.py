@@ -1,5 +1,6 @@
 """A real JupyterLab and a real Chromium. What a test leaves to be looked at is in tests/shots."""
 
+import io
 import json
 import os
 import secrets
@@ -16,7 +17,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from PIL import Image
 from playwright.sync_api import Browser, Error, Page, sync_playwright
 
 ROOT = Path(__file__).parents[2]
@@ -34,6 +37,9 @@ FLAGS = [
     "--disable-default-apps",
     "--disable-extensions",
 ]
+CANVAS = ".jupyter-threejs canvas"
+DRIVER = ".ikteach-driver"
+SHOWN = f"+document.querySelector('{DRIVER}').dataset.shown"  # frames that have been drawn
 READY = 40_000  # [ms] how long a page may take on a slow machine before the test gives up
 
 
@@ -128,6 +134,29 @@ class Notebook:
         self.page.locator(".jp-CodeCell", has_text=cell).first.locator(".cm-content").click()
         self.command("notebook:run-cell")
 
+    def run_figure(self, cell: str) -> None:
+        """Run the cell with this text in it, and wait until its figure is drawn."""
+        self.run_cell(cell)
+        self.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
+
+    def press(self, button: str) -> None:
+        self.page.get_by_role("button", name=button, exact=True).first.click()
+
+    def settle(self, expression: str, wanted: Any) -> None:
+        """Wait until the kernel says so, or fail with what it says."""
+        end, said = time.monotonic() + READY / 1000, None
+        while time.monotonic() < end:
+            said = self.kernel(expression)
+            if said == wanted:
+                return
+            time.sleep(0.1)
+        pytest.fail(f"{expression} is {said!r}, not {wanted!r}")
+
+    def frames(self, more: int) -> None:
+        """Wait until so many more frames have been drawn."""
+        before = self.page.evaluate(SHOWN)
+        self.page.wait_for_function(f"{SHOWN} >= {before + more}", timeout=READY)
+
     def shot(self, name: str, selector: str | None = None) -> bytes:
         """A screenshot of the page, or of one element, kept in tests/shots to be looked at."""
         SHOTS.mkdir(exist_ok=True)
@@ -142,6 +171,11 @@ ASK = """async ([code, expression]) => {
   const reply = (await future.done).content;
   return reply.status === "ok" ? reply.user_expressions.answer : reply;
 }"""
+
+
+def pixels(png: bytes) -> np.ndarray:
+    """Red, green and blue of a picture, (height, width, 3)."""
+    return np.asarray(Image.open(io.BytesIO(png)).convert("RGB")).astype(int)
 
 
 def open_browser(play: Any) -> Browser:

@@ -1,26 +1,19 @@
 """Chapter 7 as a student has it: a walking figure whose controls act, in pixels and in state."""
 
-import io
 import time
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pytest
-from PIL import Image
 
-from tests.browser.conftest import READY, Notebook
-
-CANVAS = ".jupyter-threejs canvas"
-DRIVER = ".ikteach-driver"
-SHOWN = f"+document.querySelector('{DRIVER}').dataset.shown"
+from tests.browser.conftest import CANVAS, DRIVER, READY, SHOWN, Notebook, pixels
 
 
 @pytest.fixture(scope="module")
 def gait(open_notebook: Any) -> Iterator[Notebook]:
     notebook = open_notebook("07_gait.ipynb")
-    notebook.run_cell("player = GaitPlayer()")
-    notebook.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
+    notebook.run_figure("player = GaitPlayer()")
     yield notebook
     assert notebook.errors == []
 
@@ -29,36 +22,11 @@ def gait(open_notebook: Any) -> Iterator[Notebook]:
 def fresh(gait: Notebook) -> None:
     """Each test finds the player walking by dls, with nothing changed."""
     if gait.kernel("player.playing") is False:
-        press(gait, "Play")
-
-
-def pixels(png: bytes) -> np.ndarray:
-    return np.asarray(Image.open(io.BytesIO(png)).convert("RGB")).astype(int)
-
-
-def press(gait: Notebook, button: str) -> None:
-    gait.page.get_by_role("button", name=button, exact=True).first.click()
-
-
-def settle(gait: Notebook, expression: str, wanted: Any) -> None:
-    """Wait until the kernel says so, or fail with what it says."""
-    end, said = time.monotonic() + 20, None
-    while time.monotonic() < end:
-        said = gait.kernel(expression)
-        if said == wanted:
-            return
-        time.sleep(0.1)
-    pytest.fail(f"{expression} is {said!r}, not {wanted!r}")
-
-
-def frames(gait: Notebook, more: int) -> None:
-    """Wait until so many more frames have been drawn."""
-    before = gait.page.evaluate(SHOWN)
-    gait.page.wait_for_function(f"{SHOWN} >= {before + more}", timeout=READY)
+        gait.press("Play")
 
 
 def test_a_figure_is_seen(gait: Notebook) -> None:
-    frames(gait, 10)
+    gait.frames(10)
     picture = pixels(gait.shot("07_walking", CANVAS))
     colours = {
         "shirt": [95, 143, 180], "skin": [217, 165, 126], "trousers": [74, 85, 104],
@@ -71,19 +39,19 @@ def test_a_figure_is_seen(gait: Notebook) -> None:
 
 
 def test_it_moves_and_pause_stops_it(gait: Notebook) -> None:
-    frames(gait, 3)
+    gait.frames(3)
     first = pixels(gait.shot("07_moves_1", CANVAS))
-    frames(gait, 8)
+    gait.frames(8)
     second = pixels(gait.shot("07_moves_2", CANVAS))
     assert (abs(first - second).max(axis=-1) > 30).mean() > 0.005
-    press(gait, "Pause")
-    settle(gait, "player._task.done()", True)
+    gait.press("Pause")
+    gait.settle("player._task.done()", True)
     time.sleep(1.5)  # what is under way is drawn
     third = pixels(gait.shot("07_paused_1", CANVAS))
     time.sleep(0.5)
     assert (third == pixels(gait.shot("07_paused_2", CANVAS))).all()
     before = gait.page.evaluate(SHOWN)
-    press(gait, "Step")
+    gait.press("Step")
     gait.page.wait_for_function(f"{SHOWN} > {before}", timeout=READY)
     time.sleep(0.5)
     assert (third != pixels(gait.shot("07_stepped", CANVAS))).any()
@@ -91,22 +59,22 @@ def test_it_moves_and_pause_stops_it(gait: Notebook) -> None:
 
 @pytest.mark.parametrize("method", ["transpose", "pseudoinverse", "sdls", "dls"])
 def test_methods(gait: Notebook, method: str) -> None:
-    press(gait, method)
-    settle(gait, "player.session.method", method)
+    gait.press(method)
+    gait.settle("player.session.method", method)
     gait.page.wait_for_selector(f"table.ikteach-table >> text={method} (shown)", timeout=READY)
     gait.page.wait_for_selector(f"{DRIVER}[aria-label*='by {method}']", timeout=READY)
     gait.shot(f"07_{method}")
 
 
 def test_motions(gait: Notebook) -> None:
-    press(gait, "running")
-    settle(gait, "player.session.gait.name", "running")
+    gait.press("running")
+    gait.settle("player.session.gait.name", "running")
     gait.page.wait_for_selector(f"{DRIVER}[aria-label*='running']", timeout=READY)
     assert gait.kernel("player.controls.sliders['back_y_leg'].value") == -1.1
-    frames(gait, 20)
+    gait.frames(20)
     gait.shot("07_running")
-    press(gait, "walking")
-    settle(gait, "player.session.gait.name", "walking")
+    gait.press("walking")
+    gait.settle("player.session.gait.name", "walking")
 
 
 @pytest.mark.parametrize(
@@ -118,13 +86,13 @@ def test_motions(gait: Notebook) -> None:
 )
 def test_boxes(gait: Notebook, box: str, state: str) -> None:
     gait.page.get_by_role("checkbox", name=box).check()
-    settle(gait, state, True)
+    gait.settle(state, True)
     if box == "moving forward":
         gone = gait.kernel("player.session.advance")
-        frames(gait, 5)
+        gait.frames(5)
         assert gait.kernel("player.session.advance") > gone
     gait.page.get_by_role("checkbox", name=box).uncheck()
-    settle(gait, state, False)
+    gait.settle(state, False)
 
 
 @pytest.mark.parametrize(
@@ -156,26 +124,26 @@ def test_sliders_by_keyboard_to_both_ends(
     for key, end in zip(("Home", "End"), ends, strict=True):
         slider.focus()
         gait.page.keyboard.press(key)
-        settle(gait, value, end)
-        frames(gait, 2)
+        gait.settle(value, end)
+        gait.frames(2)
     gait.kernel("None", f"{control}.value = {was}")
-    settle(gait, value, was)
+    gait.settle(value, was)
     assert gait.kernel("player.status.wrong") == ""
 
 
 def test_reset(gait: Notebook) -> None:
-    frames(gait, 5)
-    press(gait, "Pause")
-    press(gait, "Reset")
-    settle(gait, "[player.session.ticks, player.session.time]", [0, 0.0])
+    gait.frames(5)
+    gait.press("Pause")
+    gait.press("Reset")
+    gait.settle("[player.session.ticks, player.session.time]", [0, 0.0])
 
 
 def test_view(gait: Notebook) -> None:
-    press(gait, "Pause")
-    settle(gait, "player._task.done()", True)
+    gait.press("Pause")
+    gait.settle("player._task.done()", True)
     before = pixels(gait.shot("07_three_quarter", CANVAS))
     gait.page.get_by_label("View", exact=True).select_option("side")
-    settle(gait, "list(player.scene.camera.position)[0] > 2", True)
+    gait.settle("list(player.scene.camera.position)[0] > 2", True)
     time.sleep(0.5)
     assert (before != pixels(gait.shot("07_side", CANVAS))).mean() > 0.05
     gait.page.get_by_label("View", exact=True).select_option("three-quarter")
@@ -217,7 +185,7 @@ player.scene.driver.send = counting()
 """
     before = gait.kernel("player.scene.driver.sent", count)
     for _ in range(4):
-        frames(gait, 15)
+        gait.frames(15)
         ahead = gait.kernel("[player.scene.driver.sent - player.scene.driver.drawn, _d.AHEAD]")
         assert ahead[0] <= ahead[1]
     sent, counted = gait.kernel("[player.scene.driver.sent, counted['frames']]")
@@ -233,8 +201,8 @@ def test_an_error_is_told_once_and_the_session_goes_on(gait: Notebook) -> None:
     assert alert.count() == 1
     gait.shot("07_error")
     gait.kernel("None", "from ikteach import dls\nplayer.session.methods['dls'] = dls")
-    press(gait, "Play")
-    frames(gait, 5)
+    gait.press("Play")
+    gait.frames(5)
     assert alert.count() == 0
 
 
@@ -245,21 +213,21 @@ def test_running_the_cell_again_leaves_one_loop(gait: Notebook) -> None:
     )
     old = gait.kernel("player.scene.driver.model_id")
     gait.run_cell("player = GaitPlayer()")
-    settle(gait, f"player.scene.driver.model_id != {old!r}", True)
+    gait.settle(f"player.scene.driver.model_id != {old!r}", True)
     gait.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
-    frames(gait, 10)
+    gait.frames(10)
     assert gait.kernel(loops) == 1
     gait.kernel("None", "player.close()")
-    settle(gait, loops, 0)
+    gait.settle(loops, 0)
     gait.run_cell("player = GaitPlayer()")
     gait.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
 
 
 def test_nobody_looks_no_loop_runs(gait: Notebook) -> None:
-    frames(gait, 5)
+    gait.frames(5)
     gait.kernel("None", "import ikteach.view.driver as _d; _d.PATIENCE = 0.5")
     gait.command("notebook:clear-all-cell-outputs")
-    settle(gait, "player._task.done()", True)
+    gait.settle("player._task.done()", True)
     gait.run_cell("player = GaitPlayer()")
     gait.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
-    frames(gait, 5)
+    gait.frames(5)

@@ -15,8 +15,7 @@ from urllib.parse import urlsplit
 import pytest
 from playwright.sync_api import Browser, Page, Request, Route
 
-from tests.browser.conftest import READY, SHOTS, open_page
-from tests.browser.test_gait import CANVAS, DRIVER, SHOWN, pixels
+from tests.browser.conftest import CANVAS, DRIVER, READY, SHOTS, SHOWN, open_page, pixels
 
 KERNEL = r'"kernelId": ?"([\w-]+)"'
 

@@ -1,8 +1,6 @@
 """Recorder, replay and glass as a student has them: in a page, with mouse and keys."""
 
-import io
 import os
-import time
 from collections.abc import Iterator
 from typing import Any
 
@@ -12,7 +10,7 @@ import pytest
 from PIL import Image
 
 from ikteach.formats import movie
-from tests.browser.conftest import READY, Lab, Notebook
+from tests.browser.conftest import READY, SHOTS, Lab, Notebook, pixels
 
 CELLS = [
     """import asyncio
@@ -50,24 +48,10 @@ def book(lab: Lab, open_notebook: Any) -> Iterator[Notebook]:
     assert notebook.errors == []
 
 
-def press(book: Notebook, button: str) -> None:
-    book.page.get_by_role("button", name=button, exact=True).click()
-
-
 def wait_for(book: Notebook, selector: str, text: str) -> str:
     found = book.page.locator(selector, has_text=text).first
     found.wait_for(timeout=READY)
     return found.inner_text()
-
-
-def settle(book: Notebook, expression: str, wanted: Any) -> None:
-    end, said = time.monotonic() + READY / 1000, None
-    while time.monotonic() < end:
-        said = book.kernel(expression)
-        if said == wanted:
-            return
-        time.sleep(0.1)
-    pytest.fail(f"{expression} is {said!r}, not {wanted!r}")
 
 
 def fill(book: Notebook, label: str, value: str) -> None:
@@ -80,17 +64,13 @@ def folder(lab: Lab) -> set[str]:
     return {name for name in os.listdir(lab.folder) if "stroll" in name}
 
 
-def pixels(png: bytes) -> np.ndarray:
-    return np.asarray(Image.open(io.BytesIO(png)).convert("RGB")).astype(int)
-
-
 def test_a_movie_is_recorded_while_the_notebook_goes_on(book: Notebook, lab: Lab) -> None:
     fill(book, "File name", "stroll")
     fill(book, "Width [pixels]", "320")
     fill(book, "Height", "240")
     fill(book, "Seconds", "1.5")
     fill(book, "Frames a s", "20")
-    press(book, "Start recording")
+    book.press("Start recording")
     wait_for(book, SAID, "Recording")
     assert book.kernel("6 * 7") == 42  # a cell runs meanwhile
     ticks = book.kernel("session.ticks")
@@ -108,8 +88,6 @@ def test_a_movie_is_recorded_while_the_notebook_goes_on(book: Notebook, lab: Lab
 
 
 def book_shot(name: str) -> Any:
-    from tests.browser.conftest import SHOTS
-
     SHOTS.mkdir(exist_ok=True)
     return SHOTS / f"{name}.png"
 
@@ -117,12 +95,12 @@ def book_shot(name: str) -> Any:
 def test_a_file_is_replaced_only_when_asked(book: Notebook, lab: Lab) -> None:
     before = (lab.folder / "stroll.mp4").read_bytes()
     fill(book, "Seconds", "0.5")
-    press(book, "Start recording")
+    book.press("Start recording")
     assert "tick the box to replace it" in wait_for(book, ALERT, "already")
     book.shot("09_recorder_refuses")
     assert (lab.folder / "stroll.mp4").read_bytes() == before
     book.page.get_by_role("checkbox", name="replace a file of that name").check()
-    press(book, "Start recording")
+    book.press("Start recording")
     wait_for(book, SAID, "is complete: 10 frames")
     assert book.page.locator(ALERT, has_text="already").count() == 0
     assert movie.facts(lab.folder / "stroll.mp4").frames == 10
@@ -130,16 +108,16 @@ def test_a_file_is_replaced_only_when_asked(book: Notebook, lab: Lab) -> None:
 
 def test_stop_leaves_no_file(book: Notebook, lab: Lab) -> None:
     fill(book, "File name", "stroll on")
-    press(book, "GIF")
+    book.press("GIF")
     fill(book, "Seconds", "30")
-    press(book, "Start recording")
+    book.press("Start recording")
     wait_for(book, SAID, "Recording")
-    press(book, "Stop recording")
+    book.press("Stop recording")
     wait_for(book, SAID, "Stopped: no file was written")
     assert folder(lab) == {"stroll.mp4"}
     fill(book, "Seconds", "0.5")
     book.page.get_by_label("Film", exact=True).select_option("what has been")
-    press(book, "Start recording")
+    book.press("Start recording")
     wait_for(book, SAID, "stroll on.gif is complete: 10 frames")
     assert movie.facts(lab.folder / "stroll on.gif").size == (320, 240)
 
@@ -153,7 +131,7 @@ def test_scrubbing_rows_and_the_plot_show_the_pose(book: Notebook) -> None:
 
     def shows(row: int) -> None:
         """All say the same row, and the figure has been drawn anew."""
-        settle(book, "[replay.at, replay.slider.value, replay.curve.chosen]", [row] * 3)
+        book.settle("[replay.at, replay.slider.value, replay.curve.chosen]", [row] * 3)
         chosen = page.locator(".ikteach-rows tr[aria-selected=true]")
         page.wait_for_selector(f".ikteach-rows tr[data-row='{row}'][aria-selected=true]")
         assert chosen.count() == 1
@@ -196,27 +174,27 @@ def test_scrubbing_rows_and_the_plot_show_the_pose(book: Notebook) -> None:
     )
     book.shot("09_replay")
     page.get_by_role("button", name="Play", exact=True).click()
-    settle(book, "replay.at", 59)
-    settle(book, "replay.playing.value", False)
+    book.settle("replay.at", 59)
+    book.settle("replay.playing.value", False)
 
 
 def test_the_glass_is_leafed_through(book: Notebook) -> None:
     book.run_cell("glass = Glass")
-    press(book, "Stop the clock and look")
+    book.press("Stop the clock and look")
     wait_for(book, SAID, "Page 1 of 6")
-    settle(book, "walking.done()", True)
+    book.settle("walking.done()", True)
     ticks = book.kernel("session.ticks")
     picture = book.page.locator("img[alt^='Bars of the error']")
     assert picture.count() == 1
     alts = {picture.get_attribute("alt")}
     for number in range(2, 7):
-        press(book, "Next")
+        book.press("Next")
         wait_for(book, SAID, f"Page {number} of 6")
         book.shot(f"09_glass_{number}")
         alts.add(book.kernel("glass.picture.alt"))
     assert len(alts) == 6
     assert book.page.get_by_role("button", name="Next", exact=True).is_disabled()
-    press(book, "Back")
+    book.press("Back")
     wait_for(book, SAID, "Page 5 of 6")
     shown = book.page.locator("img[alt^='Bars of the step']")
     shown.wait_for(timeout=READY)
@@ -226,19 +204,19 @@ def test_the_glass_is_leafed_through(book: Notebook) -> None:
     assert table.locator("tbody tr").count() == 20
     book.shot("09_glass_table")
     assert book.kernel("session.ticks") == ticks
-    press(book, "Do this tick")
-    settle(book, "session.ticks", ticks + 1)
+    book.press("Do this tick")
+    book.settle("session.ticks", ticks + 1)
 
 
 def test_a_session_is_saved_and_opened(book: Notebook, lab: Lab) -> None:
     book.run_cell("keeper = Keeper")
-    press(book, "Save the session")
+    book.press("Save the session")
     said = wait_for(book, SAID, "are saved in")
     assert {"session.json", "session.csv"} <= set(os.listdir(lab.folder))
     assert said.startswith(f"{book.kernel('len(session.record)')} ticks")
-    press(book, "Open and replay")
+    book.press("Open and replay")
     wait_for(book, SAID, "are open")
     last = book.kernel("len(session.record)") - 1
     book.page.locator(f".ikteach-rows tr[data-row='{last}']").last.click()
-    settle(book, "keeper.place.children[0].at", last)
+    book.settle("keeper.place.children[0].at", last)
     book.shot("09_opened")

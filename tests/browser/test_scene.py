@@ -10,11 +10,8 @@ import pytest
 from PIL import Image
 
 from ikteach.view.stage import LAYERS
-from tests.browser.conftest import READY, Lab, Notebook
-from tests.browser.test_gait import pixels, settle
+from tests.browser.conftest import CANVAS, DRIVER, READY, Lab, Notebook, pixels
 
-CANVAS = ".jupyter-threejs canvas"
-DRIVER = ".ikteach-driver"
 FRAME = f"+(document.querySelector('{DRIVER}').dataset.frame ?? -1)"
 SAID = ".ikteach-said[role=status]"
 HAND = 3  # hand.l
@@ -68,8 +65,7 @@ def scene(lab: Lab, open_notebook: Any) -> Iterator[Notebook]:
     book.metadata.kernelspec = {"name": "python3", "display_name": "Python 3"}
     nbformat.write(book, lab.folder / "scene.ipynb")
     notebook = open_notebook("scene.ipynb")
-    notebook.run_cell("scene = Scene")
-    notebook.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
+    notebook.run_figure("scene = Scene")
     notebook.page.wait_for_selector(".ikteach-stage", timeout=READY)
     yield notebook
     assert notebook.errors == []
@@ -145,7 +141,7 @@ def test_a_drag_moves_target_and_hand_and_not_the_camera(scene: Notebook) -> Non
     drag(scene, x, y, -60, 50)
     scene.shot("scene_drag")
     scene.page.mouse.up()
-    settle(scene, f"bool(targets.positions[{HAND}, 1] > {before[HAND, 1] + 0.1})", True)
+    scene.settle(f"bool(targets.positions[{HAND}, 1] > {before[HAND, 1] + 0.1})", True)
     after = np.array(scene.kernel("targets.positions.tolist()"))
     assert (after[:HAND] == before[:HAND]).all()
     new_hand = np.array(scene.kernel("hand.tolist()"))
@@ -159,7 +155,7 @@ def test_a_drag_moves_target_and_hand_and_not_the_camera(scene: Notebook) -> Non
     assert corner
     drag(scene, corner["x"] + 30, corner["y"] + 30, 40, 0)
     scene.page.mouse.up()
-    settle(scene, f"list(scene.camera.position) != {eye}", True)
+    scene.settle(f"list(scene.camera.position) != {eye}", True)
     scene.kernel("None", "scene.look_from('three-quarter')")
 
 
@@ -168,9 +164,9 @@ def test_escape_takes_a_whole_drag_back(scene: Notebook) -> None:
     x, y = where(scene, HAND)
     drag(scene, x, y, 40, 30)
     scene.page.mouse.up()
-    settle(scene, f"{position(HAND)} != {was}", True)
+    scene.settle(f"{position(HAND)} != {was}", True)
     scene.page.keyboard.press("Escape")
-    settle(scene, position(HAND), was)
+    scene.settle(position(HAND), was)
     scene.page.wait_for_selector(f"{SAID} >> text=Taken back", timeout=READY)
 
 
@@ -185,11 +181,11 @@ def test_a_finger_drags_too(scene: Notebook) -> None:
         scene.page.wait_for_timeout(20)
     finger.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
     finger.detach()
-    settle(scene, f"bool(targets.positions[{HAND}, 1] > {was[1] + 0.02})", True)
+    scene.settle(f"bool(targets.positions[{HAND}, 1] > {was[1] + 0.02})", True)
     assert np.hypot(*(np.array(where(scene, HAND)) - [x - 36, y - 24])) < 3
     assert scene.kernel("list(scene.camera.position)") == eye
     scene.kernel("None", "targets.undo()")
-    settle(scene, position(HAND), was)
+    scene.settle(position(HAND), was)
 
 
 def test_by_keyboard_alone(scene: Notebook) -> None:
@@ -203,30 +199,30 @@ def test_by_keyboard_alone(scene: Notebook) -> None:
         page.keyboard.press("Tab")
         page.wait_for_selector(f"{SAID} >> text={name} chosen", timeout=READY)
     assert differ(plain, picture(scene, "scene_chosen")) > 0.0005  # the ring
-    settle(scene, "targets.handles.chosen", 2)
+    scene.settle("targets.handles.chosen", 2)
     x, y, z = scene.kernel(position(2))
     keys = {"ArrowUp": (0, 1, 0), "ArrowRight": (1, 0, 0), "PageUp": (0, 0, -1)}
     for key, way in keys.items():
         page.keyboard.press(key)
         x, y, z = x + 0.05 * way[0], y + 0.05 * way[1], z + 0.05 * way[2]
-        settle(scene, f"bool(abs(targets.positions[2] - {[x, y, z]}).max() < 1e-4)", True)
+        scene.settle(f"bool(abs(targets.positions[2] - {[x, y, z]}).max() < 1e-4)", True)
     page.keyboard.press("Shift+ArrowDown")
-    settle(scene, f"bool(abs(targets.positions[2] - {[x, y - 0.005, z]}).max() < 1e-4)", True)
+    scene.settle(f"bool(abs(targets.positions[2] - {[x, y - 0.005, z]}).max() < 1e-4)", True)
     page.keyboard.press("Escape")
-    settle(scene, f"bool(abs(targets.positions[2] - {[x, y, z]}).max() < 1e-4)", True)
+    scene.settle(f"bool(abs(targets.positions[2] - {[x, y, z]}).max() < 1e-4)", True)
     page.keyboard.press("Shift+Tab")
     page.wait_for_selector(f"{SAID} >> text=foot.r chosen", timeout=READY)
     for _ in range(3):
         page.keyboard.press("Tab")  # hand.r, hand.l, and out of the picture
     page.wait_for_function("!document.activeElement.matches('.ikteach-stage')", timeout=READY)
-    settle(scene, "targets.handles.chosen", -1)
+    scene.settle("targets.handles.chosen", -1)
 
 
 def test_keys_turn_the_camera_when_no_target_is_chosen(scene: Notebook) -> None:
     scene.page.locator(".ikteach-stage").focus()
     angle = scene.kernel("scene.cameras.angles[0]")
     scene.page.keyboard.press("ArrowRight")
-    settle(scene, f"bool(abs(scene.cameras.angles[0] - {angle} - 5.73) < 0.1)", True)
+    scene.settle(f"bool(abs(scene.cameras.angles[0] - {angle} - 5.73) < 0.1)", True)
     scene.kernel("None", "scene.look_from('three-quarter')")
 
 
@@ -237,18 +233,18 @@ def test_sliders_boxes_and_handles_agree(scene: Notebook) -> None:
     slider.focus()
     page.keyboard.press("End")
     high = scene.kernel(f"targets.high[{HAND}][1]")
-    settle(scene, f"targets.positions[{HAND}, 1]", high)
+    scene.settle(f"targets.positions[{HAND}, 1]", high)
     page.wait_for_function("([box, high]) => +box.value === high",
                            arg=[box.element_handle(), round(high, 2)], timeout=READY)  # fmt: skip
     box.fill("0.25")
     box.press("Enter")
-    settle(scene, f"targets.positions[{HAND}, 1]", 0.25)
+    scene.settle(f"targets.positions[{HAND}, 1]", 0.25)
     page.wait_for_function("slider => slider.valueAsNumber === 0.25 || slider.value === '0.25'",
                            arg=slider.element_handle(), timeout=READY)  # fmt: skip
     x, y = where(scene, HAND)  # the handle is where the number says
     drag(scene, x, y, 30, 0)
     page.mouse.up()
-    settle(scene, f"bool(targets.positions[{HAND}, 0] == 0.8)", False)
+    scene.settle(f"bool(targets.positions[{HAND}, 0] == 0.8)", False)
     now = scene.kernel(position(HAND))
     page.wait_for_function("([box, y]) => Math.abs(+box.value - y) < 0.006",
                            arg=[box.element_handle(), now[1]], timeout=READY)  # fmt: skip
@@ -268,7 +264,7 @@ def test_a_number_outside_its_range_is_refused_with_the_range(scene: Notebook) -
                                  arg=[box.element_handle(), shows], timeout=READY)  # fmt: skip
     scene.shot("scene_refused")
     scene.page.get_by_role("button", name="Undo").click()
-    settle(scene, f"targets.positions.tolist() != {was}", True)
+    scene.settle(f"targets.positions.tolist() != {was}", True)
     assert alert.inner_text() == ""
 
 
@@ -308,7 +304,7 @@ def test_a_planar_arm_is_dragged_in_its_plane(scene: Notebook) -> None:
     x, y = where(scene, 0, "plane", "goal")
     drag(scene, x, y, -80, 20)
     scene.page.mouse.up()
-    settle(scene, "bool(goal.positions[0, 0] < 1.2)", True)
+    scene.settle("bool(goal.positions[0, 0] < 1.2)", True)
     assert scene.kernel("goal.positions[0, 2]") == 0
     scene.shot("scene_arm_dragged", CANVAS)
 

@@ -8,11 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.browser.conftest import READY, Notebook
-from tests.browser.test_gait import pixels, settle
+from tests.browser.conftest import CANVAS, DRIVER, READY, Notebook, pixels
 
-CANVAS = ".jupyter-threejs canvas"
-DRIVER = ".ikteach-driver"
 STATUS = ".ikteach-cursor"
 RED, WHITE, SKIN = [213, 94, 0], [255, 255, 255], [217, 165, 126]
 SESSION = "player.session"
@@ -22,8 +19,7 @@ HAND = f"{SESSION}.standing[{SESSION}.method]"
 @pytest.fixture(scope="module")
 def reach(open_notebook: Any) -> Iterator[Notebook]:
     notebook = open_notebook("10_reach.ipynb")
-    notebook.run_cell("player = Simulator()")
-    notebook.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
+    notebook.run_figure("player = Simulator()")
     notebook.page.wait_for_selector(".ikteach-stage", timeout=READY)
     yield notebook
     assert notebook.errors == []
@@ -41,7 +37,7 @@ def press(reach: Notebook, key: str, times: int, axis: int, to: float) -> None:
     """Press a key so often, and see that it has brought the cursor's coordinate there."""
     for _ in range(times):
         reach.page.keyboard.press(key)
-    settle(reach, f"round(float({SESSION}.cursor[{axis}]), 6)", to)
+    reach.settle(f"round(float({SESSION}.cursor[{axis}]), 6)", to)
     drawn(reach)
 
 
@@ -80,7 +76,7 @@ def word(reach: Notebook, words: str) -> None:
 
 
 def test_a_white_cursor_the_hand_arrives_and_is_seen_there(reach: Notebook) -> None:
-    settle(reach, f"{HAND}.arrived is not None", True)
+    reach.settle(f"{HAND}.arrived is not None", True)
     drawn(reach)
     word(reach, "white")
     word(reach, "within reach of the right arm")
@@ -95,10 +91,10 @@ def test_out_of_reach_it_is_red_and_the_arm_goes_back_to_rest(reach: Notebook) -
     take_hold(reach)
     press(reach, "ArrowLeft", 12, 0, -0.95)
     press(reach, "ArrowUp", 6, 1, 0.55)
-    settle(reach, f"{SESSION}.within", False)
+    reach.settle(f"{SESSION}.within", False)
     word(reach, "red")
     word(reach, "out of reach of every package")
-    settle(reach, f"{HAND}.words", "does not answer: at rest")
+    reach.settle(f"{HAND}.words", "does not answer: at rest")
     rest = f"abs({SESSION}.theta - {SESSION}.tree.rest)"
     assert reach.kernel(f"float({rest}[{SESSION}.body.arm('r')].max())") < 1e-9
     drawn(reach)
@@ -112,9 +108,9 @@ def test_back_within_reach_it_is_white_and_the_hand_comes(reach: Notebook) -> No
     take_hold(reach)
     press(reach, "ArrowRight", 12, 0, -0.35)
     press(reach, "ArrowDown", 6, 1, 0.25)
-    settle(reach, f"{SESSION}.within", True)
+    reach.settle(f"{SESSION}.within", True)
     word(reach, "white")
-    settle(reach, f"{HAND}.words.startswith('arrived')", True)
+    reach.settle(f"{HAND}.words.startswith('arrived')", True)
     drawn(reach)
     picture = pixels(reach.shot("10_white_again", CANVAS))
     assert share(picture, SKIN, place(reach)) > 0.04
@@ -125,7 +121,7 @@ def test_the_head_follows_the_cursor_up(reach: Notebook) -> None:
     before, low = reach.kernel(nod), pixels(reach.shot("10_head_low", CANVAS))
     take_hold(reach)
     press(reach, "Numpad8", 8, 1, 0.65)
-    settle(reach, f"{HAND}.words.startswith('arrived')", True)
+    reach.settle(f"{HAND}.words.startswith('arrived')", True)
     drawn(reach)
     assert reach.kernel(nod) < before - 0.3  # the neck's angle grows downward
     high = pixels(reach.shot("10_head_high", CANVAS))
@@ -144,7 +140,7 @@ def test_depth_and_keypad(reach: Notebook) -> None:
             for _ in range(2):
                 reach.page.keyboard.press(pressed)
             moved = f"(abs({SESSION}.cursor - {before}).round(6)).tolist()"
-            settle(reach, moved, [far if i == axis else 0.0 for i in range(3)])
+            reach.settle(moved, [far if i == axis else 0.0 for i in range(3)])
 
 
 def test_methods_and_the_middle_by_keyboard(reach: Notebook) -> None:
@@ -155,9 +151,9 @@ def test_methods_and_the_middle_by_keyboard(reach: Notebook) -> None:
     button = reach.page.get_by_role("button", name="dls", exact=True).first
     button.focus()
     reach.page.keyboard.press("Enter")
-    settle(reach, f"{SESSION}.method", "dls")
+    reach.settle(f"{SESSION}.method", "dls")
     word(reach, "together")
-    settle(reach, f"{HAND}.arrived is not None", True)
+    reach.settle(f"{HAND}.arrived is not None", True)
     reach.page.wait_for_selector("table.ikteach-table >> text=dls (shown)", timeout=READY)
     rows = reach.page.locator("table.ikteach-table").first.locator("tbody tr")
     assert rows.count() == 6
@@ -165,8 +161,8 @@ def test_methods_and_the_middle_by_keyboard(reach: Notebook) -> None:
 
 
 def test_a_new_size_of_the_window_changes_nothing_else(reach: Notebook) -> None:
-    settle(reach, f"{SESSION}.settled", True)
-    settle(reach, "player._task.done()", True)
+    reach.settle(f"{SESSION}.settled", True)
+    reach.settle("player._task.done()", True)
     state = (
         f"[{SESSION}.theta.tolist(), {SESSION}.cursor.tolist(), {SESSION}.ticks, "
         f"{SESSION}.method, player.playing, list(player.scene.camera.position)]"
@@ -183,9 +179,9 @@ def test_an_oscillation_is_said_and_an_error_is_told_once(reach: Notebook) -> No
     cramer = reach.page.get_by_role("button", name="cramer", exact=True).first
     cramer.focus()
     reach.page.keyboard.press("Enter")
-    settle(reach, f"{SESSION}.method", "cramer")
+    reach.settle(f"{SESSION}.method", "cramer")
     reach.kernel("None", f"{SESSION}.put([0.4, -0.2, 0.3]); player.play(); player.wake()")
-    settle(reach, f"{HAND}.words.startswith('oscillates')", True)
+    reach.settle(f"{HAND}.words.startswith('oscillates')", True)
     reach.page.wait_for_selector("table.ikteach-table >> text=oscillates", timeout=READY)
     broken = "from dataclasses import replace\nfrom ikteach.motion.ways import WAYS\n"
     broken += "bad = replace(WAYS['dls'], solver=lambda J, e: J[..., 0, :] * float('nan'))\n"
@@ -201,5 +197,5 @@ def test_an_oscillation_is_said_and_an_error_is_told_once(reach: Notebook) -> No
     play.focus()
     reach.page.keyboard.press("Enter")
     ticks = reach.kernel(f"{SESSION}.ticks")
-    settle(reach, f"{SESSION}.ticks > {ticks}", True)
+    reach.settle(f"{SESSION}.ticks > {ticks}", True)
     assert alert.count() == 0

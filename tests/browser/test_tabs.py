@@ -8,9 +8,8 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser
 
-from tests.browser.conftest import READY, Lab, Notebook, open_page
-from tests.browser.test_gait import DRIVER, frames, settle
-from tests.browser.test_workbench import LOOPS, press
+from tests.browser.conftest import DRIVER, READY, Lab, Notebook, open_page
+from tests.browser.test_workbench import LOOPS
 
 NAME = "tabs.ipynb"  # a copy, for it is saved with its output
 FRAME = f"+document.querySelector('{DRIVER}').dataset.frame"
@@ -31,10 +30,9 @@ def first(lab: Lab, open_notebook: Any) -> Iterator[Notebook]:
     """A page in which the workbench has played, in a notebook that has been saved with it."""
     shutil.copy(lab.folder / "09_workbench.ipynb", lab.folder / NAME)
     notebook = open_notebook(NAME)
-    notebook.run_cell("bench = Workbench()")
-    notebook.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
-    press(notebook, "Pause")  # the second page has enough to do
-    settle(notebook, "bench._task.done()", True)
+    notebook.run_figure("bench = Workbench()")
+    notebook.press("Pause")  # the second page has enough to do
+    notebook.settle("bench._task.done()", True)
     notebook.command("docmanager:save")
     yield notebook
     assert notebook.errors == []
@@ -52,21 +50,21 @@ def second(first: Notebook, lab: Lab, browser: Browser) -> Iterator[Notebook]:
 
 def test_two_tabs_show_the_same(first: Notebook, second: Notebook) -> None:
     assert len(first.lab.ask("kernels")) == 1
-    press(second, "Play")
+    second.press("Play")
     for page in first, second:
-        frames(page, 5)
-    press(first, "Pause")
-    settle(second, "[bench.playing, bench._task.done()]", [False, True])
+        page.frames(5)
+    first.press("Pause")
+    second.settle("[bench.playing, bench._task.done()]", [False, True])
     second.page.get_by_role("button", name="Play", exact=True).first.wait_for(timeout=READY)
-    press(first, "sdls")
-    settle(second, "bench.session.method", "sdls")
+    first.press("sdls")
+    second.settle("bench.session.method", "sdls")
     second.page.wait_for_selector("button.mod-active >> text=sdls", timeout=READY)
     sent = first.kernel("bench.scene.driver.sent")
     for page in first, second:
         page.page.wait_for_function(f"{FRAME} >= {sent}", timeout=READY)
-    press(first, "Play")
+    first.press("Play")
     for page in first, second:
-        frames(page, 5)
+        page.frames(5)
     assert first.kernel(LOOPS) == 1
     assert first.kernel("bench.status.wrong") == ""
 
@@ -74,8 +72,8 @@ def test_two_tabs_show_the_same(first: Notebook, second: Notebook) -> None:
 def test_a_page_that_comes_later_can_run_the_cell_again(first: Notebook, second: Notebook) -> None:
     ticks = second.kernel("bench.session.ticks")  # it has shown what went on without that
     second.run_cell("bench = Workbench()")
-    settle(second, f"bench.session.ticks < {ticks} and bench.scene.driver.greeted", True)
-    frames(second, 5)
+    second.settle(f"bench.session.ticks < {ticks} and bench.scene.driver.greeted", True)
+    second.frames(5)
     assert second.kernel(LOOPS) == 1
     gone = first.page.locator(DRIVER).first
     gone.wait_for(state="detached", timeout=READY)  # the other page shows no dead picture

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.browser.conftest import READY, Notebook
-from tests.browser.test_gait import CANVAS, DRIVER, frames, pixels, settle
+from tests.browser.conftest import CANVAS, DRIVER, READY, Notebook, pixels
 
 HEADER = ".jupyter-widget-Collapse-header"
 LOOPS = (
@@ -21,14 +20,9 @@ LOOPS = (
 @pytest.fixture(scope="module")
 def bench(open_notebook: Any) -> Iterator[Notebook]:
     notebook = open_notebook("09_workbench.ipynb")
-    notebook.run_cell("bench = Workbench()")
-    notebook.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
+    notebook.run_figure("bench = Workbench()")
     yield notebook
     assert notebook.errors == []
-
-
-def press(bench: Notebook, button: str) -> None:
-    bench.page.get_by_role("button", name=button, exact=True).first.click()
 
 
 def open_panel(bench: Notebook, title: str) -> None:
@@ -79,50 +73,50 @@ def tick(bench: Notebook, label: str) -> None:
 def still(bench: Notebook) -> None:
     """Pause, so that what changes in the picture is what the test does."""
     if bench.kernel("bench.playing"):
-        press(bench, "Pause")
-        settle(bench, "bench._task.done()", True)
+        bench.press("Pause")
+        bench.settle("bench._task.done()", True)
 
 
 def test_method(bench: Notebook) -> None:
-    frames(bench, 10)
+    bench.frames(10)
     open_panel(bench, "Method")
     for method in ("transpose", "pseudoinverse", "sdls", "mix", "dls"):
-        press(bench, method)
-        settle(bench, "bench.session.method", method)
-        frames(bench, 2)
+        bench.press(method)
+        bench.settle("bench.session.method", method)
+        bench.frames(2)
     open_panel(bench, "Options of the methods")
     methods = "__import__('ikteach.motion.session', fromlist=['x']).in_words(bench.session.methods)"
     slide(bench, "dls: damping")
-    settle(bench, f"round({methods}['dls']['damping'], 3)", 1.0)
+    bench.settle(f"round({methods}['dls']['damping'], 3)", 1.0)
     slide(bench, "transpose: gain")
-    settle(bench, f"{methods}['transpose']['gain']", 2.0)
+    bench.settle(f"{methods}['transpose']['gain']", 2.0)
     slide(bench, "pseudoinverse: cutoff")
-    settle(bench, f"{methods}['pseudoinverse']['cutoff']", 0.5)
+    bench.settle(f"{methods}['pseudoinverse']['cutoff']", 0.5)
     slide(bench, "sdls: γ_max", "Home")
-    settle(bench, f"{methods}['sdls']['max_angle']", 0.05)
-    press(bench, "soft")
-    settle(bench, f"{methods}['sdls']['clamp']", "soft")
+    bench.settle(f"{methods}['sdls']['max_angle']", 0.05)
+    bench.press("soft")
+    bench.settle(f"{methods}['sdls']['clamp']", "soft")
     open_panel(bench, "Mix: a method per effector")
     choose(bench, "hand.l", "transpose")
-    settle(bench, f"{methods}['mix']['hand.l']", "transpose")
+    bench.settle(f"{methods}['mix']['hand.l']", "transpose")
     open_panel(bench, "Around the solver")
-    press(bench, "equal")
-    settle(bench, "round(bench.session.caps['dls'], 4)", 0.1745)
+    bench.press("equal")
+    bench.settle("round(bench.session.caps['dls'], 4)", 0.1745)
     slide(bench, "equal cap")
-    settle(bench, "round(bench.session.caps['dls'], 4)", 1.5708)
-    press(bench, "each author's own")
-    settle(
-        bench, "[round(bench.session.caps['dls'], 4), bench.session.caps['sdls']]", [0.7854, None]
+    bench.settle("round(bench.session.caps['dls'], 4)", 1.5708)
+    bench.press("each author's own")
+    bench.settle(
+        "[round(bench.session.caps['dls'], 4), bench.session.caps['sdls']]", [0.7854, None]
     )
     options = "__import__('ikteach.motion.session', fromlist=['x']).in_words(bench.session.options)"
-    press(bench, "per_chain")
-    settle(bench, f"{options}['cap']", "per_chain")
-    press(bench, "clip")
-    settle(bench, f"{options}['limits']", "clip")
+    bench.press("per_chain")
+    bench.settle(f"{options}['cap']", "per_chain")
+    bench.press("clip")
+    bench.settle(f"{options}['limits']", "clip")
     tick(bench, "clamp errors")
-    settle(bench, f"round({options}['max_error'], 3)", 0.4)
+    bench.settle(f"round({options}['max_error'], 3)", 0.4)
     slide(bench, "error clamp")
-    settle(bench, f"{options}['max_error']", 1.0)
+    bench.settle(f"{options}['max_error']", 1.0)
     assert bench.kernel("bench.status.wrong") == ""
 
 
@@ -130,30 +124,30 @@ def test_motion_and_motion_control(bench: Notebook) -> None:
     still(bench)
     before = picture(bench, "walking")
     open_panel(bench, "Motion")
-    press(bench, "running")
-    settle(bench, "bench.session.gait.name", "running")
-    press(bench, "Step")
-    settle(bench, "bench._task.done()", True)
+    bench.press("running")
+    bench.settle("bench.session.gait.name", "running")
+    bench.press("Step")
+    bench.settle("bench._task.done()", True)
     assert changed(before, picture(bench, "running")) > 0.01
-    press(bench, "walking")
-    settle(bench, "bench.session.gait.name", "walking")
+    bench.press("walking")
+    bench.settle("bench.session.gait.name", "walking")
     open_panel(bench, "Motion control")
     tick(bench, "moving forward")
-    settle(bench, "bench.session.gait.forward", True)
+    bench.settle("bench.session.gait.forward", True)
     tick(bench, "wounded")
-    settle(bench, "sorted(bench.session.gait.wound)", ["ankle.r", "hip.bend.r", "knee.r"])
+    bench.settle("sorted(bench.session.gait.wound)", ["ankle.r", "hip.bend.r", "knee.r"])
     choose(bench, "Joint", "elbow.l")
-    settle(bench, f"{control('mobility')}.value", 1.0)
+    bench.settle(f"{control('mobility')}.value", 1.0)
     slide(bench, "mobility", "Home")
-    settle(bench, "bench.session.gait.wound.get('elbow.l')", 0.0)
+    bench.settle("bench.session.gait.wound.get('elbow.l')", 0.0)
     before = picture(bench, "drawn_before")
     slide(bench, "drawn + [°]", "End")
-    settle(bench, "float(bench._plus.max().round(4))", 1.0472)
+    bench.settle("float(bench._plus.max().round(4))", 1.0472)
     slide(bench, "drawn ×", "Home")
-    settle(bench, "float(bench._times.min())", 0.0)
+    bench.settle("float(bench._times.min())", 0.0)
     assert changed(before, picture(bench, "drawn_after")) > 0.005
-    press(bench, "Heal all")
-    settle(bench, "[bench.session.gait.wound, float(bench._plus.max())]", [{}, 0.0])
+    bench.press("Heal all")
+    bench.settle("[bench.session.gait.wound, float(bench._plus.max())]", [{}, 0.0])
 
 
 def test_view(bench: Notebook) -> None:
@@ -161,15 +155,15 @@ def test_view(bench: Notebook) -> None:
     open_panel(bench, "View")
     before = picture(bench, "view")
     choose(bench, "View", "side")
-    settle(bench, "list(bench.scene.cameras.current.position)[0] > 2", True)
+    bench.settle("list(bench.scene.cameras.current.position)[0] > 2", True)
     assert changed(before, picture(bench, "view_side")) > 0.03
-    press(bench, "orthographic")
-    settle(bench, "bench.scene.cameras.orthographic", True)
+    bench.press("orthographic")
+    bench.settle("bench.scene.cameras.orthographic", True)
     parallel = picture(bench, "view_parallel")
-    press(bench, "perspective")
+    bench.press("perspective")
     choose(bench, "View", "three-quarter")
     choose(bench, "J and ellipsoid of", "hand.l")
-    settle(bench, "bench._chosen", 3)
+    bench.settle("bench._chosen", 3)
     assert changed(before, parallel) > 0.03
     layers = bench.kernel("[name for name in bench.scene.layers]")
     for layer in [*layers, "targets"]:
@@ -177,18 +171,18 @@ def test_view(bench: Notebook) -> None:
         tick(bench, layer)
         if layer in ("footprints", "trails"):
             for _ in range(4):
-                press(bench, "Step")
-            settle(bench, "bench._task.done()", True)
+                bench.press("Step")
+            bench.settle("bench._task.done()", True)
         else:
             time.sleep(0.3)
         assert changed(was, picture(bench, f"layer_{layer.replace(' ', '_')}")) > 0.0005, layer
         tick(bench, layer)
-        settle(bench, "any(bench.scene.layers.values())", False)
+        bench.settle("any(bench.scene.layers.values())", False)
     tick(bench, "dark")
-    settle(bench, "bench.scene.dark", True)
+    bench.settle("bench.scene.dark", True)
     assert picture(bench, "dark")[2, 2].max() < 60
     tick(bench, "dark")
-    settle(bench, "bench.scene.dark", False)
+    bench.settle("bench.scene.dark", False)
 
 
 def test_object(bench: Notebook) -> None:
@@ -198,23 +192,23 @@ def test_object(bench: Notebook) -> None:
     for label in ("turn [°]", "tilt [°]", "zoom", "move right", "move up"):
         was, before = bench.kernel(at), picture(bench, "object")
         slide(bench, label, "End")
-        settle(bench, f"{at} != {was}", True)
+        bench.settle(f"{at} != {was}", True)
         assert changed(before, picture(bench, "object_moved")) > 0.005, label
-    press(bench, "As it was")
-    settle(bench, f"{control('zoom')}.value", 1.0)
+    bench.press("As it was")
+    bench.settle(f"{control('zoom')}.value", 1.0)
     ball = bench.page.locator(".ikteach-ball").first
     ball.focus()
     was = bench.kernel(at)
     bench.page.keyboard.press("ArrowLeft")
-    settle(bench, f"{at} != {was}", True)
+    bench.settle(f"{at} != {was}", True)
     was, box = bench.kernel(at), ball.bounding_box()
     assert box
     bench.page.mouse.move(box["x"] + 60, box["y"] + 60)
     bench.page.mouse.down()
     bench.page.mouse.move(box["x"] + 90, box["y"] + 70, steps=4)
     bench.page.mouse.up()
-    settle(bench, f"{at} != {was}", True)
-    press(bench, "As it was")
+    bench.settle(f"{at} != {was}", True)
+    bench.press("As it was")
 
 
 def test_speed_and_target_position(bench: Notebook) -> None:
@@ -233,31 +227,31 @@ def test_speed_and_target_position(bench: Notebook) -> None:
         open_panel(bench, title)
         for label, (parameter, end) in rows.items():
             slide(bench, label)
-            settle(bench, f"bench.session.gait.{parameter}", end)
+            bench.settle(f"bench.session.gait.{parameter}", end)
     open_panel(bench, "Motion")
-    press(bench, "running")
-    settle(bench, "bench.session.gait.speed", 9.0)
-    press(bench, "walking")
-    settle(bench, "[bench.session.gait.slowdown, bench.session.gait.speed]", [1, 5.6])
+    bench.press("running")
+    bench.settle("bench.session.gait.speed", 9.0)
+    bench.press("walking")
+    bench.settle("[bench.session.gait.slowdown, bench.session.gait.speed]", [1, 5.6])
 
 
 def test_a_target_is_dragged_and_the_table_says_so(bench: Notebook) -> None:
     still(bench)
-    press(bench, "Reset")
+    bench.press("Reset")
     open_panel(bench, "Target position")
-    settle(bench, "bench.session.ticks", 0)
+    bench.settle("bench.session.ticks", 0)
     box = bench.page.locator("input[type=number][aria-label='hand.l y']")
     box.fill("0.4")
     box.press("Enter")
-    settle(bench, "[bench.session.by_hand, bench.session.targets[3].tolist()[1]]", [True, 0.4])
+    bench.settle("[bench.session.by_hand, bench.session.targets[3].tolist()[1]]", [True, 0.4])
     box.fill("99")
     box.press("Enter")
     alert = bench.page.locator(".ikteach-alert[role=alert]:not(:empty)")
     alert.wait_for(timeout=READY)
     assert "goes from" in alert.inner_text()
     assert bench.kernel("bench.session.targets[3].tolist()[1]") == 0.4
-    press(bench, "Play")
-    frames(bench, 20)
+    bench.press("Play")
+    bench.frames(20)
     near = bench.kernel("float(bench.session.error[3])")
     assert near < 0.3
     bench.page.locator(".ikteach-stage").first.focus()
@@ -265,37 +259,37 @@ def test_a_target_is_dragged_and_the_table_says_so(bench: Notebook) -> None:
         bench.page.keyboard.press("Tab")
     before = bench.kernel("bench.session.targets.tolist()")
     bench.page.keyboard.press("ArrowDown")
-    settle(bench, f"bench.session.targets.tolist() != {before}", True)
+    bench.settle(f"bench.session.targets.tolist() != {before}", True)
     bench.page.keyboard.press("Escape")
-    settle(bench, f"bench.session.targets.tolist() == {before}", True)
+    bench.settle(f"bench.session.targets.tolist() == {before}", True)
     bench.page.wait_for_function(
         "document.querySelector('.ikteach-driver').textContent.includes('by hand')", timeout=READY
     )
-    press(bench, "Undo")
+    bench.press("Undo")
     assert bench.kernel("bench.status.wrong") == ""
 
 
 def test_look_back_and_back_to_now(bench: Notebook) -> None:
-    frames(bench, 10)
-    press(bench, "Look back")
-    settle(bench, "bench.replay is not None and not bench.playing", True)
+    bench.frames(10)
+    bench.press("Look back")
+    bench.settle("bench.replay is not None and not bench.playing", True)
     name = re.compile(r"^\s*Tick(?!s)")
     bench.page.locator(".widget-slider", has_text=name).locator(".noUi-handle").focus()
     before = picture(bench, "replay_start")
     bench.page.keyboard.press("End")
-    settle(bench, "bench.replay.at == len(bench.replay.run) - 1", True)
+    bench.settle("bench.replay.at == len(bench.replay.run) - 1", True)
     assert changed(before, picture(bench, "replay_end")) > 0.002
-    press(bench, "Back to now")
-    settle(bench, "bench.replay is None", True)
+    bench.press("Back to now")
+    bench.settle("bench.replay is None", True)
 
 
 def test_figures_of_all_methods(bench: Notebook) -> None:
     open_panel(bench, "View")
     for figures in ("all methods, overlaid", "all methods, side by side", "one figure"):
         choose(bench, "Figures", figures)
-        settle(bench, "bench._figures", figures)
+        bench.settle("bench._figures", figures)
         bench.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
-        settle(bench, "bench.scene.driver.greeted", True)
+        bench.settle("bench.scene.driver.greeted", True)
         frames_settled(bench)
         bench.shot(f"09_{figures.split(',')[-1].strip().replace(' ', '_')}", ".ikteach-scene")
     assert bench.kernel("bench.status.wrong") == ""
@@ -303,24 +297,24 @@ def test_figures_of_all_methods(bench: Notebook) -> None:
 
 def test_an_error_is_told_once_and_the_session_goes_on(bench: Notebook) -> None:
     bench.kernel("None", "bench.session.methods['sdls'] = lambda J, e: J[0] * float('nan')")
-    press(bench, "Play") if not bench.kernel("bench.playing") else None
+    bench.press("Play") if not bench.kernel("bench.playing") else None
     alert = bench.page.locator(".ikteach-status [role=alert]:not(:empty)").first
     alert.wait_for(timeout=READY)
     assert "not finite" in alert.inner_text()
     bench.kernel("None", "from ikteach import sdls\nbench.session.use('sdls', sdls)")
-    press(bench, "Play")
-    frames(bench, 5)
-    settle(bench, "bench.status.wrong", "")
+    bench.press("Play")
+    bench.frames(5)
+    bench.settle("bench.status.wrong", "")
 
 
 def test_quit_stops_every_loop_and_says_so(bench: Notebook) -> None:
-    press(bench, "Quit")
-    settle(bench, LOOPS, 0)
+    bench.press("Quit")
+    bench.settle(LOOPS, 0)
     said = bench.page.locator(".ikteach-status [role=status]", has_text="The workbench has ended")
     said.wait_for(timeout=READY)
     bench.shot("09_quit")
     assert bench.errors == []
     bench.run_cell("bench = Workbench()")
     bench.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
-    frames(bench, 5)
+    bench.frames(5)
     assert bench.kernel(LOOPS) == 1
