@@ -16,6 +16,7 @@ from ikteach.arrays import Array, Index, Mask, frozen
 from ikteach.names import unknown
 
 GROUND = -1
+DEEP = 8  # joints in a chain, from which on fewer rounds are worth more products
 
 
 @dataclass(frozen=True)
@@ -173,8 +174,8 @@ class Plan:
 
     order   (n,)         the joints, those that hang from the ground first
     rank    (n,)         its inverse: the row of joint j
-    climbs               for 1, 2, 4, 8 …: the rows that have so many joints above them (they are
-                         the last ones), and the row that stands so many above each of them
+    climbs               the rounds in which rows are joined to what is above them: a range of rows,
+                         and the row that each of them is multiplied by
     terms   (n, 3, 20)   in the plan's order: what 1, sin θ and cos θ are multiplied by to make
                          [R p v; 0 1 0] (4, 5), each joint in its parent's frame; (n, 4, 20) with
                          θ itself if there are slides
@@ -194,11 +195,17 @@ class Plan:
         depth = np.array([len(chain) for chain in chains])
         order = np.argsort(depth, kind="stable")
         rank = np.argsort(order)
+        deepest = int(depth.max())
+        # Each round: the rows deeper than `over` and down to `down`, by those `height` above them.
+        if deepest <= DEEP:  # level by level, each row joined once
+            rounds = [(over, over + 1, 1) for over in range(1, deepest)]
+        else:  # pointer doubling: rows hold the last 1, 2, 4 … transforms of their chains
+            rounds = [(2**r, deepest, 2**r) for r in range((deepest - 1).bit_length())]
         climbs = []
-        for height in (2**r for r in range(int(depth.max()).bit_length())):
-            rows = slice(int((depth <= height).sum()), None)
-            if above := [rank[chains[joint][height]] for joint in order[rows]]:
-                climbs.append((rows, frozen(above, np.intp)))
+        for over, down, height in rounds:
+            rows = slice(int((depth <= over).sum()), int((depth <= down).sum()))
+            above = [rank[chains[joint][height]] for joint in order[rows]]
+            climbs.append((rows, frozen(above, np.intp)))
         slides = bool(tree.slide.any())
         return cls(
             order=frozen(order, np.intp),
