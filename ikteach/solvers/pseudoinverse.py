@@ -4,6 +4,7 @@ import numpy as np
 
 from ikteach.arrays import Array
 
+EPS = float(np.finfo(float).eps)
 TINY = 1e-150  # [m/rad]; a motion this small is none
 
 
@@ -19,6 +20,6 @@ def pseudoinverse(J: Array, e: Array, *, cutoff: float = 0.01) -> Array:
     """
     U, sigma, Vt = np.linalg.svd(J, full_matrices=False)
     strongest = sigma[..., :1]
-    kept = sigma > np.maximum(TINY, strongest * max(cutoff, np.finfo(float).eps))
+    kept = sigma > np.maximum(TINY, strongest * max(cutoff, EPS))
     alpha = np.vecmat(e, U)
     return np.vecmat(np.where(kept, alpha / np.where(kept, sigma, 1), 0), Vt)
