@@ -105,9 +105,19 @@ class Notebook:
         page.on("pageerror", lambda error: self.errors.append(str(error)))
         page.on("console", self._heard)
         page.goto(lab.url(name))
+        self._wait()
+
+    def reload(self) -> None:
+        """Load the page anew, as F5 does."""
+        self.page.reload()
+        self._wait()
+
+    def _wait(self) -> None:
+        """Wait for the notebook, its menu and its kernel."""
+        page = self.page
         page.wait_for_selector(".jp-Notebook .jp-CodeCell", timeout=READY)
         page.wait_for_function(
-            "window.jupyterapp.commands.hasCommand('notebook:run-all-cells')", timeout=READY
+            "window.jupyterapp?.commands.hasCommand('notebook:run-all-cells')", timeout=READY
         )
         page.wait_for_function(
             "window.jupyterapp.shell.currentWidget?.sessionContext?.session?.kernel", timeout=READY
