@@ -10,7 +10,7 @@ from ikteach.view.fused import Piece
 from ikteach.view.shapes import Shape, globe
 from ikteach.view.skin import Ball, Limb, Part
 
-FINE, PLAIN = (12, 4), (8, 2)  # slices of a ball, rings of each half: of one figure, of several
+FINE, PLAIN = (10, 3), (8, 2)  # slices of a ball, rings of each half: of one figure, of several
 
 
 def pieces(
