@@ -255,13 +255,13 @@ class Session:
     def jitter(self, last: int = 1) -> dict[str, Array]:
         """‖Δ²θ‖ of each method in the last ticks of the record, {name: (≤ last,)} [rad a tick²].
 
-        0 in the first two ticks, which have no second difference.
+        Before the first tick of the record the figure is taken to have stood still.
         """
         poses = [row.theta for row in self._recent(last + 2)]
-        if len(poses) < last + 2:
-            poses = [*poses[:1], *poses[:1], *poses]
         if not poses:
             return {name: np.zeros(0) for name in self.methods}
+        if len(poses) < last + 2:  # they begin with the first of all
+            poses = [*2 * poses[:1], *poses][-(last + 2) :]
         jitter = np.linalg.norm(np.diff(poses, n=2, axis=0), axis=-1)
         return dict(zip(self.methods, jitter.T, strict=True))
 

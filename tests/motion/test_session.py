@@ -235,6 +235,17 @@ def test_reset_keeps_settings_and_events(session):
     assert session.events[-1].run == 1
 
 
+def test_jitter_is_that_of_the_tracks_after_any_number_of_ticks(session):
+    assert [list(one) for one in session.jitter(3).values()] == [[]] * len(session.methods)
+    for count in range(1, 7):
+        session.tick()
+        tracks = session.tracks()
+        for last in range(1, 8):
+            for name, jitter in session.jitter(last).items():
+                assert len(jitter) == min(last, count)
+                assert_allclose(jitter, tracks[name].jitter[-last:], atol=1e-14)
+
+
 def test_an_error_is_logged_once_and_changes_no_pose(session):
     run(session, 2)
     session.methods["sdls"] = lambda J, e: J[0] * np.nan

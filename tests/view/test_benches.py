@@ -12,6 +12,7 @@ from PIL import Image
 from ikteach.view import charts
 from ikteach.view.bench import Bench, Shown, slider
 from ikteach.view.caps import CapPlayer
+from ikteach.view.player import GaitPlayer
 from ikteach.view.race import OWN, Race
 from ikteach.view.slope import slope_bench
 from ikteach.view.spectrum import spectrum_bench
@@ -111,6 +112,23 @@ def test_the_cap_player_obeys() -> None:
     second = CapPlayer()
     assert player.comm is None
     second.close()
+
+
+def test_curves_have_what_each_single_step_did(monkeypatch: pytest.MonkeyPatch) -> None:
+    player = GaitPlayer()
+    session, sent = player.session, []
+    monkeypatch.setattr(
+        player.strips, "send", lambda _, buffers: sent.append(np.frombuffer(buffers[0], "<f4"))
+    )
+    for _ in range(4):
+        player.step()
+        player.strips.send_new()
+        far = [row.error.mean() for row in session.tracks(last=1).values()]
+        shaken = [np.degrees(one[0]) for one in session.jitter().values()]
+        told = [session.ticks * session.dt, *session.error, *far, *shaken]
+        np.testing.assert_allclose(sent[-1], told, rtol=1e-6)
+    assert len(sent) == 4
+    player.close()
 
 
 def test_the_race_obeys() -> None:
