@@ -35,7 +35,7 @@ function render({ model, el }) {
     return [..."xyz"].map((letter, axis) => pair(row, target, axis, `${name} ${letter}`));
   });
   const button = element("button", el,
-    { class: "ikteach-undo jupyter-button", type: "button" }, "Undo");
+    { class: "ikteach-undo jupyter-button", type: "button" }, "Undo move");
   const alert = element("p", el, { class: "ikteach-alert", role: "alert" });
 
   function pair(row, target, axis, name) {

@@ -112,8 +112,7 @@ def main(seconds: float) -> None:
         notebook.run_cell("import asyncio")
         for cell in counts:
             began = time.monotonic()
-            notebook.run_cell(cell)
-            page.wait_for_selector(".ikteach-driver[data-frame]", timeout=READY)
+            notebook.run_figure(cell)
             page.wait_for_selector(".ikteach-stage", timeout=READY)
             print(f"{cell}: shown after {time.monotonic() - began:.1f} s")
             drag(notebook)

@@ -150,11 +150,11 @@ class Notebook:
         self.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
 
     def press(self, button: str) -> None:
-        self.page.get_by_role("button", name=button, exact=True).first.click()
+        self.page.get_by_role("button", name=button, exact=True).click()
 
     def settle(self, expression: str, wanted: Any) -> None:
         """Wait until the kernel says so, or fail with what it says."""
-        end, said = time.monotonic() + READY / 1000, None
+        end, said = time.monotonic() + 20, None
         while time.monotonic() < end:
             said = self.kernel(expression)
             if said == wanted:

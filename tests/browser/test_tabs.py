@@ -69,17 +69,27 @@ def test_two_tabs_show_the_same(first: Notebook, second: Notebook) -> None:
     assert first.kernel("bench.status.wrong") == ""
 
 
+def test_a_page_that_comes_later_can_run_the_cell_again(first: Notebook, second: Notebook) -> None:
+    run_again(second)  # it has shown what went on without that
+    gone = first.page.locator(DRIVER).first
+    gone.wait_for(state="detached", timeout=READY)  # the other page shows no dead picture
+
+
 def test_a_reloaded_page_goes_on_when_the_cell_is_run_again(
     first: Notebook, second: Notebook
 ) -> None:
+    second.command("docmanager:save")  # else Lab looks for the figure of before, in vain
     second.reload()
-    ticks = second.kernel("bench.session.ticks")
-    second.run_cell("bench = Workbench()")
-    second.settle(f"bench.session.ticks < {ticks} and bench.scene.driver.greeted", True)
-    second.frames(5)
-    assert second.kernel(LOOPS) == 1
-    gone = first.page.locator(DRIVER).first
-    gone.wait_for(state="detached", timeout=READY)  # the other page shows no dead picture
+    run_again(second)
+
+
+def run_again(page: Notebook) -> None:
+    """Run the cell, and see that there is a new figure, which moves, and one loop."""
+    old = page.kernel("bench.scene.driver.model_id")
+    page.run_cell("bench = Workbench()")
+    page.settle(f"bench.scene.driver.model_id != {old!r} and bench.scene.driver.greeted", True)
+    page.frames(5)
+    assert page.kernel(LOOPS) == 1
 
 
 def test_no_loop_is_left_when_the_notebook_is_closed(first: Notebook, second: Notebook) -> None:
