@@ -39,7 +39,10 @@ c.Spawner.cmd = [sys.executable, str(HERE / "start.py")]
 c.Spawner.notebook_dir = "~/ikteach-course"
 c.Spawner.default_url = "/lab/tree/00_figure.ipynb"
 c.Spawner.args = [
-    "--ServerApp.jpserver_extensions=ikteach.server=True",  # small messages at once
+    "--ServerApp.jpserver_extensions=ikteach.server=True",  # frames in time
+    # Kernels take no ports: of twenty that start at once, two may choose the same one, and a kernel
+    # that finds its port taken dies. And a port is open to everybody on the machine.
+    "--KernelManager.transport=ipc",
     "--MappingKernelManager.cull_idle_timeout=3600",  # [s] kernels that no page looks at
     "--LabApp.news_url=None",
     "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate",
