@@ -11,7 +11,6 @@ import os
 import re
 import secrets
 import shutil
-import signal
 import socket
 import subprocess
 import sys
@@ -21,10 +20,9 @@ from pathlib import Path
 from typing import Any, NamedTuple, Self
 from uuid import uuid4
 
+import aiohttp
 import psutil
 from jupyter_server.services.kernels.connection import base as protocol
-from tornado.httpclient import AsyncHTTPClient, HTTPClientError, HTTPRequest, HTTPResponse
-from tornado.websocket import websocket_connect
 
 ROOT = Path(__file__).parents[2]
 CONFIG = ROOT / "binder" / "jupyterhub" / "jupyterhub_config.py"
@@ -37,9 +35,6 @@ DRIVER_JS = (ROOT / "ikteach" / "view" / "driver.js").read_text()
 CELLS = json.loads((ROOT / "notebooks" / "07_gait.ipynb").read_text())["cells"]
 (PLAYER,) = ("".join(cell["source"]) for cell in CELLS if cell["id"] == "player")
 ONE_METHOD = "from ikteach import dls, view; view.GaitPlayer({'dls': dls})"
-
-
-AsyncHTTPClient.configure(None, max_clients=1000)  # a class does not queue
 
 
 class Hub:
@@ -78,15 +73,14 @@ class Hub:
         """The end of what it says."""
         return self._log.read_text()[-3000:]
 
-    async def ask(self, path: str, token: str = "", post: Any = None) -> HTTPResponse:
-        """GET, or POST something; HTTPClientError for what is refused."""
-        return await AsyncHTTPClient().fetch(
-            self.url + path,
-            method="GET" if post is None else "POST",
-            headers={"Authorization": f"token {token}"} if token else {},
-            body=None if post is None else json.dumps(post),
-            request_timeout=PATIENCE,
-        )
+    async def ask(self, path: str, token: str = "", post: Any = None) -> str:
+        """GET, or POST something; ClientResponseError for what is refused."""
+        method = "GET" if post is None else "POST"
+        headers = {"Authorization": f"token {token}"} if token else {}
+        url = self.url + path
+        async with self.web.request(method, url, headers=headers, json=post) as answer:
+            answer.raise_for_status()
+            return await answer.text()
 
     def servers(self) -> dict[str, psutil.Process]:
         """The process of each student's server."""
@@ -96,31 +90,33 @@ class Hub:
         return {name: child for name, child in owners.items() if name}
 
     async def __aenter__(self) -> Self:
+        nobody_queues = aiohttp.TCPConnector(limit=0)
+        self.web = aiohttp.ClientSession(
+            connector=nobody_queues, timeout=aiohttp.ClientTimeout(PATIENCE)
+        )
         end = time.monotonic() + PATIENCE
         while time.monotonic() < end and self.process.poll() is None:
-            with contextlib.suppress(OSError, HTTPClientError):  # at first the proxy knows no hub
-                await AsyncHTTPClient().fetch(f"{self.url}/hub/health")
+            with contextlib.suppress(aiohttp.ClientError):  # at first the proxy knows no hub
+                await self.ask("/hub/health")
                 return self
             await asyncio.sleep(0.2)
-        self.stop()
+        await self.__aexit__()
         raise RuntimeError(f"The hub does not answer.\n{self.log()}")
 
     async def __aexit__(self, *_: object) -> None:
+        await self.web.close()
         self.stop()
 
     def stop(self) -> None:
         """End it, and all that it has started."""
         if self.process.poll() is not None:
             return
-        started = self.process.children(recursive=True)
-        self.process.send_signal(signal.SIGTERM)
-        for process in started:
-            with contextlib.suppress(psutil.NoSuchProcess):
-                process.kill()
-        try:
-            self.process.wait(20)
-        except psutil.TimeoutExpired:
-            self.process.kill()
+        started = [self.process, *self.process.children(recursive=True)]
+        for how in (psutil.Process.terminate, psutil.Process.kill):
+            for process in started:
+                with contextlib.suppress(psutil.NoSuchProcess):
+                    how(process)
+            _, started = psutil.wait_procs(started, timeout=20)
 
 
 class Frame(NamedTuple):
@@ -153,42 +149,39 @@ class Student:
         hub, user = self.hub, f"/hub/api/users/{self.name}"
         token = await self.log_in(hub.passwords[self.name])
         await hub.ask(f"{user}/server", token, post={})
-        told = (await hub.ask(f"{user}/server/progress", token)).body.decode()
+        told = await hub.ask(f"{user}/server/progress", token)
         if '"ready": true' not in told:
             raise RuntimeError(f"{self.name} gets no server: {told[-500:]}\n{hub.log()}")
         kernels = f"/user/{self.name}/api/kernels"
-        kernel = json.loads((await hub.ask(kernels, token, post={"name": "python3"})).body)["id"]
-        url = f"{hub.url}{kernels}/{kernel}/channels".replace("http", "ws", 1)
-        self._page = await websocket_connect(
-            HTTPRequest(
-                url,
-                headers={"Authorization": f"token {token}"},
-                connect_timeout=PATIENCE,
-                request_timeout=PATIENCE,
-            ),
-            on_message_callback=self._hear,
-            subprotocols=[PROTOCOL],
-            max_message_size=2**27,
+        kernel = json.loads(await hub.ask(kernels, token, post={"name": "python3"}))["id"]
+        self._page = await hub.web.ws_connect(
+            f"{hub.url}{kernels}/{kernel}/channels",
+            headers={"Authorization": f"token {token}"},
+            protocols=[PROTOCOL],
+            max_msg_size=2**27,
         )
+        self._listening = asyncio.create_task(self._listen())
         code = {"code": self.cell, "silent": False, "allow_stdin": False, "stop_on_error": True}
-        self._say("execute_request", **code)
+        await self._say("execute_request", **code)
         await asyncio.wait_for(self._done.wait(), PATIENCE)
         if self._failed or not self._driver:
             raise RuntimeError(f"{self.name} has no figure: {self._failed}")
-        self._tell(hello=True)
+        await self._tell(hello=True)
         await asyncio.wait_for(self.moving.wait(), PATIENCE)
 
     async def log_in(self, password: str) -> str:
         """A token of one's own, for a password."""
         proof = {"auth": {"username": self.name, "password": password}}
         answer = await self.hub.ask(f"/hub/api/users/{self.name}/tokens", post=proof)
-        return str(json.loads(answer.body)["token"])
+        return str(json.loads(answer)["token"])
 
-    def _tell(self, **content: Any) -> None:
+    async def _tell(self, **content: Any) -> None:
         """Send the driver in the kernel a message, as driver.js does."""
-        self._say("comm_msg", comm_id=self._driver, data={"method": "custom", "content": content})
+        await self._say(
+            "comm_msg", comm_id=self._driver, data={"method": "custom", "content": content}
+        )
 
-    def _say(self, kind: str, **content: Any) -> None:
+    async def _say(self, kind: str, **content: Any) -> None:
         header = {
             "msg_id": uuid4().hex, "msg_type": kind, "session": self._session,
             "username": self.name, "version": "5.4", "date": datetime.now(UTC).isoformat(),
@@ -196,19 +189,22 @@ class Student:
         message = {"header": header, "parent_header": {}, "metadata": {}, "content": content}
         pack = lambda part: json.dumps(part).encode()  # noqa: E731
         data = protocol.serialize_msg_to_ws_v1(message, "shell", pack)
-        self._page.write_message(data, binary=True)
+        await self._page.send_bytes(data)
 
-    def _hear(self, data: Any) -> None:
+    async def _listen(self) -> None:
+        """Hear what comes, until the server hangs up."""
+        async for message in self._page:
+            await self._hear(message.data)
+
+    async def _hear(self, data: bytes) -> None:
         """What the page does when a message comes; it is cheap, as all students share a process."""
         received = time.time()
-        if data is None:
-            return
         channel, parts = protocol.deserialize_msg_from_ws_v1(data)
         header, content = json.loads(parts[0]), json.loads(parts[3])
         self.messages += channel == "iopub"
         kind = header["msg_type"]
         if kind == "comm_msg":
-            self._obey(header, content, received)
+            await self._obey(header, content, received)
         elif kind == "comm_open":
             state = content["data"].get("state", {})
             if state.get("_model_module") == "jupyter-threejs":
@@ -219,7 +215,7 @@ class Student:
             self._failed = content.get("evalue", "")
             self._done.set()
 
-    def _obey(self, header: Any, content: Any, received: float) -> None:
+    async def _obey(self, header: Any, content: Any, received: float) -> None:
         pose = content["data"].get("content", {}).get("frame")
         own = content["comm_id"] == self._driver and pose is not None
         self.scene += own or content["comm_id"] in self._objects
@@ -231,4 +227,4 @@ class Student:
         self.moving.set()
         if pose - self._reported >= REPORT_EVERY:
             self._reported = pose
-            self._tell(drawn=pose)
+            await self._tell(drawn=pose)

@@ -4,8 +4,8 @@ import asyncio
 
 import hub as bench
 import pytest
+from aiohttp import ClientResponseError
 from classroom import Hub, Student
-from tornado.httpclient import HTTPClientError
 
 
 async def lesson(folder):
@@ -15,10 +15,10 @@ async def lesson(folder):
         mine = hub.homes / one.name / "ikteach-course" / "07_gait.ipynb"
         mine.parent.mkdir(parents=True)
         mine.write_text("mine")
-        with pytest.raises(HTTPClientError, match="403"):
+        with pytest.raises(ClientResponseError, match="403"):
             await one.log_in(hub.passwords[other.name])
         await bench.gather(students)
-        with pytest.raises(HTTPClientError, match="403"):
+        with pytest.raises(ClientResponseError, match="403"):
             await hub.ask(
                 f"/user/{other.name}/api/kernels", await one.log_in(hub.passwords[one.name])
             )
