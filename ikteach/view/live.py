@@ -28,6 +28,7 @@ class Live(widgets.VBox):  # type: ignore[misc]
 
     _living: ClassVar[dict[str, "Live"]] = {}
     REPORT_EVERY = 30  # ticks
+    SELDOM = 3  # times as rarely come curves and words, where the machine is too slow for all
 
     def __init__(self, session: Any, scene: Scene, slot: str, strips: Strips | None = None) -> None:
         if slot in self._living:
@@ -159,12 +160,13 @@ class Live(widgets.VBox):  # type: ignore[misc]
                 await asyncio.sleep(max(due - monotonic(), 0.001))
                 if not self.playing:
                     break
+                often = 1 if monotonic() - due < session.dt else self.SELDOM
                 session.tick()
                 if self.scene.driver.ready:
                     self.draw()
-                if self.strips is not None and session.ticks % EVERY == 0:
+                if self.strips is not None and session.ticks % (often * EVERY) == 0:
                     self.strips.send_new()
-                if session.ticks % self.REPORT_EVERY == 0:
+                if session.ticks % (often * self.REPORT_EVERY) == 0:
                     self.report()
             self.draw()
             if self.strips is not None:

@@ -36,6 +36,7 @@ def played(tmp_path, monkeypatch):
     What is to be done with it is given as a coroutine function.
     """
     monkeypatch.setattr(live, "monotonic", lambda: 1000 * time.monotonic())
+    monkeypatch.setattr(live.Live, "SELDOM", 1)  # by this clock it is always late
 
     def look(bench):
         driver = bench.scene.driver
