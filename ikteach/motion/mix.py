@@ -70,14 +70,13 @@ class Each:
     def __call__(self, J: Array, e: Array) -> Array:
         """Δθ (p, n); FloatingPointError names the method whose answer is not finite."""
         if self._J is None:
-            self._dtheta, asked = np.empty((len(J), J.shape[-1])), np.ones(len(J), dtype=bool)
+            self._dtheta, asked = np.empty((len(J), J.shape[-1])), range(len(J))
         else:
-            asked = (J != self._J).any(axis=(-2, -1))
-        for i in np.flatnonzero(asked):
-            dtheta = self.solvers[i](J[i], e[i])
+            asked = (J != self._J).any(axis=(-2, -1)).nonzero()[0]
+        for i in asked:
+            dtheta = self._dtheta[i] = self.solvers[i](J[i], e[i])
             if not finite(dtheta):
                 name = name_of(self.solvers[i])
                 raise FloatingPointError(f"{name} gave a step that is not finite")
-            self._dtheta[i] = dtheta
         self._J = J
         return self._dtheta.copy()

@@ -26,7 +26,7 @@ def soft(phi: Array, bound: ArrayLike) -> Array:
 
 def _peak(phi: Array) -> Array:
     """max|φ_j|, and TINY where φ is zero."""
-    return abs(phi).max(axis=-1, initial=TINY)
+    return np.maximum.reduce(abs(phi), axis=-1, initial=TINY)
 
 
 def sdls(J: Array, e: Array, *, max_angle: float = pi / 4, clamp: Clamp = hard) -> Array:
@@ -46,21 +46,21 @@ def sdls(J: Array, e: Array, *, max_angle: float = pi / 4, clamp: Clamp = hard) 
     if J.shape[-2] % 3:
         raise ValueError(f"sdls needs three rows an effector, not {J.shape[-2]} rows")
     U, sigma, Vt = np.linalg.svd(J, full_matrices=False)
-    kept = sigma > SMALLEST
-    sigma = np.maximum(sigma, SMALLEST)  # so that nothing is divided by 0
+    sigma = np.where(sigma > SMALLEST, sigma, np.inf)  # left out: u_iᵀe / σ_i is then 0
     _, _, gamma = bounds(J, U, sigma, Vt, max_angle)
-    alpha = np.vecmat(e, U) * kept
-    phi = clamp((alpha / sigma)[..., None] * Vt, gamma)  # (..., r, n), one row a direction
-    dtheta = phi.sum(axis=-2)
+    phi = clamp((np.vecmat(e, U) / sigma)[..., None] * Vt, gamma)  # (..., r, n), a row a direction
+    dtheta = np.add.reduce(phi, axis=-2)
     over = _peak(dtheta) > max_angle
-    return np.where(over[..., None], clamp(dtheta, max_angle), dtheta) if over.any() else dtheta
+    if not np.count_nonzero(over):
+        return dtheta
+    return np.where(over[..., None], clamp(dtheta, max_angle), dtheta)
 
 
 def bounds(
     J: Array, U: Array, sigma: Array, Vt: Array, max_angle: float
 ) -> tuple[Array, Array, Array]:
     """N, M [m] and γ [rad] of each singular direction of J = U diag(σ) Vᵀ with σ > 0, (..., r)."""
-    both = lengths(np.concatenate([U, J], axis=-1)).sum(axis=-2)
+    both = np.add.reduce(lengths(np.concatenate([U, J], axis=-1)), axis=-2)
     N, rho = both[..., : U.shape[-1]], both[..., U.shape[-1] :]
     M = np.matvec(abs(Vt), rho) / sigma
     return N, M, N / np.maximum(M, N) * max_angle  # min(1, N/M), and no division by M = 0
@@ -68,5 +68,5 @@ def bounds(
 
 def lengths(A: Array) -> Array:
     """The length of each 3-vector in the columns of A (..., 3k, r): (..., k, r)."""
-    vectors = A.reshape(*A.shape[:-2], A.shape[-2] // 3, 3, A.shape[-1]).mT
-    return np.sqrt(np.vecdot(vectors, vectors))
+    squares = (A * A).reshape(*A.shape[:-2], A.shape[-2] // 3, 3, A.shape[-1])
+    return np.sqrt(np.add.reduce(squares, axis=-2))

@@ -18,8 +18,8 @@ def transpose(J: Array, e: Array, *, gain: float = 1.0) -> Array:
     Source: thesis 4.4.1; Buss 2004, eq. 10.
     """
     JTe = np.vecmat(e, J)
-    size = abs(JTe).max(axis=-1, keepdims=True, initial=0)
-    g = np.divide(JTe, size, out=np.zeros_like(JTe), where=size > 0)  # α is the same for any length
+    size = np.maximum.reduce(abs(JTe), axis=-1, keepdims=True, initial=TINY)
+    g = JTe / size  # α is the same for any length
     Jg = np.matvec(J, g)
     gg, JgJg = np.vecdot(g, g)[..., None], np.vecdot(Jg, Jg)[..., None]
     alpha = np.divide(gg, JgJg, out=np.zeros_like(gg), where=JgJg > TINY)
