@@ -3,7 +3,9 @@
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike
-from ikteach.body.jacobian import YZXY, cross
+
+TINY = 1e-300  # keeps 0 / 0 away where start and end are one
+EY = np.array([0.0, 1, 0])
 
 
 def transforms(orientations: Array, positions: Array) -> Array:
@@ -15,16 +17,20 @@ def sticks(start: Array, end: Array) -> Array:
     """[R | p] (..., 3, 4) that lays the segment from (0, 0, 0) to (0, 1, 0) along start → end.
 
     The second column of R is end − start, so that R also stretches; the others have length 1.
+    They come of the mirror that takes the y axis e to ∓y: I − 2wwᵀ / wᵀw with w = y ± e, by
+    the sign of y's second number; two of its columns are across y, and one of them is turned round
+    where left would be right.
     """
     along = end - start
-    length = np.linalg.norm(along, axis=-1, keepdims=True)
-    y = np.divide(along, length, out=np.zeros_like(along), where=length > 0)
-    a, b, c = y[..., 0], y[..., 1], y[..., 2]
-    lying = abs(a) >= 0.9  # then x = y × e_z, else y × e_x
-    x = np.stack([np.where(lying, b, 0), np.where(lying, -a, c), np.where(lying, 0, -b)], axis=-1)
-    x /= np.maximum(np.linalg.norm(x, axis=-1, keepdims=True), 1e-12)
-    z = cross(x[..., YZXY, None], y[..., YZXY, None])[..., 0]
-    return transforms(np.stack([x, along, z], axis=-1), start)
+    length = np.sqrt(np.vecdot(along, along))[..., None]
+    y = along / np.maximum(length, TINY)
+    sign = np.copysign(1, y[..., 1:2])
+    w = y + sign * EY
+    M = np.empty((*y.shape, 4))
+    M[..., :3] = np.eye(3) - w[..., None] * (w / (1 + abs(y[..., 1:2])))[..., None, :]
+    M[..., 0] *= sign
+    M[..., 1], M[..., 3] = along, start
+    return M
 
 
 def quaternion_from_y(direction: ArrayLike) -> tuple[float, float, float, float]:
