@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, frozen
-from ikteach.body import forward, locate
+from ikteach.body import Frames, forward, locate
 from ikteach.body.figures import Figure, human
 from ikteach.motion.gait import Gait, walking
 from ikteach.motion.log import Event, Log, Moment
@@ -27,11 +27,12 @@ from ikteach.names import unknown
 from ikteach.solvers import SOLVERS, Solver, name_of
 
 ONE_MOVE = 0.7  # [s] a slider that is moved again so soon is still making the same change
-# What `adjust` may set: the options of `step`, but for the mobility, which is the gait's wound.
+# What `adjust` may set: the options of `step`, but for the mobility, which is the gait's wound, and
+# the frames, which are those of the poses.
 OPTIONS = [
     name
     for name, parameter in inspect.signature(step).parameters.items()
-    if parameter.kind is parameter.KEYWORD_ONLY and name != "mobility"
+    if parameter.kind is parameter.KEYWORD_ONLY and name not in ("mobility", "frames")
 ]
 
 
@@ -46,6 +47,7 @@ class Session:
     options   go to `step`, the same for all methods; set them with `adjust`
     caps      {method: max_step [rad] or None}: the step caps of methods that have their own; set
               them with `bound`
+    frames    where the joints are, in the pose of each method (M, ...)
     keep      how many ticks the record holds; `dropped` counts those it has let go
     events    the last changes, notes and errors; `events_dropped` counts those it has let go
     """
@@ -213,23 +215,27 @@ class Session:
         return self.time + elapsed, phase, self.advance + gone, self.gait.at(phase)
 
     def _follow(self) -> None:
-        poses = np.array([self.theta[name] for name in self.methods])
         options = self.options | {"max_step": self._max_steps()}
         to = step(
-            self.tree, poses, self.effectors, self.targets, Each(self.methods.values()),
-            mobility=self.gait.mobility(self.tree), **options,
+            self.tree, self._poses, self.effectors, self.targets, Each(self.methods.values()),
+            mobility=self.gait.mobility(self.tree), frames=self.frames, **options,
         )  # fmt: skip
-        self.theta.update(zip(self.methods, to.theta, strict=True))
+        self._stand(to.theta)
         self.dropped += len(self.record) == self.record.maxlen
         shown = list(self.methods).index(self.method)
         self.record.append(
             Moment(
                 self.ticks, self.time, self.phase, self.advance, self.floor, shown, self.targets,
-                to.theta, self._distances(to.theta), to.capped, to.held,
+                to.theta, self._distances(), to.capped, to.held,
             )
         )  # fmt: skip
 
     # What can be asked.
+
+    def frames_of(self, method: str) -> Frames:
+        """Where the joints are, in the pose of a method."""
+        i = list(self.methods).index(self._known(method))
+        return Frames(*(part[i] for part in self.frames))
 
     def options_of(self, method: str) -> dict[str, Any]:
         """What goes to `step` for a method."""
@@ -246,11 +252,12 @@ class Session:
     @property
     def error(self) -> Array:
         """Distance of each effector of the shown method to its target, (k,) [m]."""
-        return self._distances(self.theta[self.method])
+        return self._distances()[list(self.methods).index(self.method)]
 
-    def _distances(self, theta: Array) -> Array:
-        s = locate(forward(self.tree, theta), self.effectors)
-        return np.linalg.norm(self.targets - s, axis=-1)
+    def _distances(self) -> Array:
+        """Distance of each effector to its target, by each method, (M, k) [m]."""
+        gap = self.targets - locate(self.frames, self.effectors)
+        return np.asarray(np.sqrt(np.vecdot(gap, gap)))
 
     def jitter(self, last: int = 1) -> dict[str, Array]:
         """‖Δ²θ‖ of each method in the last ticks of the record, {name: (≤ last,)} [rad a tick²].
@@ -305,10 +312,15 @@ class Session:
     def _begin(self) -> None:
         self.time = self.phase = self.advance = 0.0
         self.ticks = self._waited = self.dropped = 0
-        self.theta = dict.fromkeys(self.methods, self.tree.rest)
+        self._stand(np.tile(self.tree.rest, (len(self.methods), 1)))
         if not self.by_hand:
             self.targets = self.gait.at(0.0)
         self.record.clear()
+
+    def _stand(self, poses: Array) -> None:
+        """Put the figure of each method into its pose (M, n) [rad]."""
+        self._poses, self.frames = poses, forward(self.tree, poses)
+        self.theta = dict(zip(self.methods, poses, strict=True))
 
     def _change(
         self, kind: str, what: Mapping[str, Any], *, going_on: bool = False, **state: Any

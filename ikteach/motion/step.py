@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Index, Mask, finite
-from ikteach.body import Effectors, Tree, forward, jacobian, locate
+from ikteach.body import Effectors, Frames, Tree, forward, jacobian, locate
 from ikteach.solvers import SOLVERS, Solver, name_of
 
 # The step caps of Buss's code [rad]; SDLS bounds its own step. The thesis describes the one of the
@@ -109,6 +109,7 @@ def step(
     mobility: ArrayLike | None = None,
     limits: LimitRule = hold,
     at_targets: bool = False,
+    frames: Frames | None = None,
 ) -> Step:
     """Move the pose θ (..., n) by one step of `solver` towards targets (..., k, 3) [m].
 
@@ -119,6 +120,7 @@ def step(
     mobility    s (..., n), 0 locked .. 1 free, in place of the tree's: Δθ = s ∘ solver(J ∘ s, e)
     limits      what happens at a limit: `hold`, `clip` or `ignore`
     at_targets  form J at the targets in place of the effectors (thesis 3.2)
+    frames      forward(tree, theta), from whoever has it already
 
     ValueError if a shape is wrong or a number not finite; LookupError for an unknown method;
     FloatingPointError if the solver's answer is not finite. Order of one tick: see MATHS; Buss.
@@ -134,7 +136,10 @@ def step(
             raise TypeError(f"{name} must be a function, not {rule!r}")
     free = tree.mobility if mobility is None else _checked_mobility(tree, mobility)
 
-    frames = forward(tree, theta)
+    if frames is None:
+        frames = forward(tree, theta)
+    elif frames.positions.shape != (*theta.shape, 3):
+        raise ValueError(f"frames are of poses {frames.positions.shape[:-1]}, not {theta.shape}")
     s = locate(frames, effectors)
     J = jacobian(tree, frames, effectors, at=targets if at_targets else s)
     e = _stacked(targets - s)

@@ -58,6 +58,7 @@ class GaitPlayer(Live):
             floor=session.floor,
             advance=session.advance,
             change=self._changes,
+            frames=session.frames_of(session.method),
         )
 
     def report(self) -> None:

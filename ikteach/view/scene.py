@@ -12,7 +12,7 @@ import numpy as np
 import pythreejs as three
 
 from ikteach.arrays import Array, ArrayLike
-from ikteach.body import Effectors, Tree
+from ikteach.body import Effectors, Frames, Tree
 from ikteach.body.rotation import sticks
 from ikteach.names import unknown
 from ikteach.view import flesh, shapes, solids
@@ -134,11 +134,11 @@ class Scene:
         self, theta: Array, targets: Array, *, floor: float | None = None, advance: float = 0.0,
         change: int = 0, effector: int = 0, columns: ArrayLike | None = None,
         ellipsoid: tuple[ArrayLike, ArrayLike] | None = None,
-        reach: Sequence[tuple[ArrayLike, float, float]] = (),
+        reach: Sequence[tuple[ArrayLike, float, float]] = (), frames: Frames | None = None,
     ) -> None:  # fmt: skip
         """Draw poses and targets, and what the layers need; see `stage.View.show`."""
         stage = self.stage
-        now = stage.now(theta, targets, floor, advance, effector, columns, ellipsoid, reach)
+        now = stage.now(theta, targets, floor, advance, effector, columns, ellipsoid, reach, frames)
         places = stage.places[:, None]
         at = now.targets + places
         ground, joints, marks, gaps = self._parts

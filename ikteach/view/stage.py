@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike
-from ikteach.body import Effectors, Tree, forward, locate
+from ikteach.body import Effectors, Frames, Tree, forward, locate
 from ikteach.names import unknown
 from ikteach.view.skin import has_human_skin
 
@@ -53,7 +53,7 @@ class View(Protocol):
         self, theta: Array, targets: Array, *, floor: float | None = None, advance: float = 0.0,
         change: int = 0, effector: int = 0, columns: ArrayLike | None = None,
         ellipsoid: tuple[ArrayLike, ArrayLike] | None = None,
-        reach: Sequence[tuple[ArrayLike, float, float]] = (),
+        reach: Sequence[tuple[ArrayLike, float, float]] = (), frames: Frames | None = None,
     ) -> None:  # fmt: skip
         """Draw poses θ (n,) or (f, n) and targets (k, 3) or (f, k, 3).
 
@@ -64,6 +64,7 @@ class View(Protocol):
         columns    (3, n) or (f, 3, n): that effector's rows of J [m/rad], a column an arrow
         ellipsoid  (directions (..., 3, 3) in columns, lengths (..., 3) [m/rad])
         reach      (centre (3,), inner, outer [m]) of each chain, at most one an effector
+        frames     forward(tree, theta), from whoever has it already
         """
 
     def switch(self, layer: str, on: bool = True) -> None:
@@ -156,12 +157,12 @@ class Stage:
     def now(
         self, theta: Array, targets: Array, floor: float | None, advance: float, effector: int,
         columns: ArrayLike | None, ellipsoid: tuple[ArrayLike, ArrayLike] | None,
-        reach: Sequence[tuple[ArrayLike, float, float]],
+        reach: Sequence[tuple[ArrayLike, float, float]], frames: Frames | None = None,
     ) -> Now:  # fmt: skip
         """The moment that `View.show` was told of, with a row for each figure."""
         f, n, k = len(self), len(self.tree), len(self.effectors)
-        theta = self._each("theta", theta, (f, n))
-        frames = forward(self.tree, theta)
+        if frames is None:
+            frames = forward(self.tree, self._each("theta", theta, (f, n)))
         axes = lengths = None
         if ellipsoid is not None:
             axes = self._each("directions of the ellipsoid", ellipsoid[0], (f, 3, 3))
@@ -171,9 +172,9 @@ class Stage:
         if len(reach) > k:
             raise ValueError(f"{k} effectors have at most {k} chains to show, not {len(reach)}")
         return Now(
-            frames.positions,
-            frames.orientations,
-            locate(frames, self.effectors),
+            self._each("positions", frames.positions, (f, n, 3)),
+            self._each("orientations", frames.orientations, (f, n, 3, 3)),
+            self._each("effectors", locate(frames, self.effectors), (f, k, 3)),
             self._each("targets", targets, (f, k, 3)),
             self.floor if floor is None else floor,
             advance,
@@ -187,10 +188,11 @@ class Stage:
     def _each(self, what: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:
         """The values, one row a figure; one row for all is given to each."""
         array = np.asarray(values, dtype=float)
-        if array.shape != shape and array.shape != shape[1:]:
-            wanted = f"{shape[1:]} or {shape}"
-            raise ValueError(f"{what} must have the shape {wanted}, not {array.shape}")
-        return np.broadcast_to(array, shape)
+        if array.shape == shape:
+            return array
+        if array.shape == shape[1:]:
+            return array[None].repeat(shape[0], axis=0)
+        raise ValueError(f"{what} must have the shape {shape[1:]} or {shape}, not {array.shape}")
 
 
 def side_of(name: str) -> Array:

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike
-from ikteach.body import Effectors, Tree
+from ikteach.body import Effectors, Frames, Tree
 from ikteach.names import unknown
 from ikteach.view import skin
 from ikteach.view.closing import close_all
@@ -92,11 +92,11 @@ class StillScene:
         self, theta: Array, targets: Array, *, floor: float | None = None, advance: float = 0.0,
         change: int = 0, effector: int = 0, columns: ArrayLike | None = None,
         ellipsoid: tuple[ArrayLike, ArrayLike] | None = None,
-        reach: Sequence[tuple[ArrayLike, float, float]] = (),
+        reach: Sequence[tuple[ArrayLike, float, float]] = (), frames: Frames | None = None,
     ) -> None:  # fmt: skip
         """Draw poses and targets, and what the layers need; see `stage.View.show`."""
         self._now = self.stage.now(
-            theta, targets, floor, advance, effector, columns, ellipsoid, reach
+            theta, targets, floor, advance, effector, columns, ellipsoid, reach, frames
         )
         self._trail.pass_through(self._now.effectors, advance)
         self._prints.pass_through(self._now.effectors[:, feet(self.effectors)], advance)

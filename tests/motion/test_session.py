@@ -48,6 +48,20 @@ def test_a_tick_is_a_step_of_every_method(session):
     assert_allclose(session.error, np.linalg.norm(session.targets - s, axis=-1))
 
 
+def test_frames_are_those_of_the_poses(session):
+    for count in (0, 2):
+        run(session, count)
+        for name, theta in session.theta.items():
+            for part, wanted in zip(
+                session.frames_of(name), forward(session.tree, theta), strict=True
+            ):
+                assert_array_equal(part, wanted)
+        s = locate(forward(session.tree, session.theta["dls"]), session.effectors)
+        assert_allclose(session.error, np.linalg.norm(session.targets - s, axis=-1))
+    with pytest.raises(LookupError, match="no method 'dsl'"):
+        session.frames_of("dsl")
+
+
 def test_ahead_is_where_the_next_tick_goes(session):
     session.change(slowdown=3, forward=True)
     run(session, 4)

@@ -99,6 +99,14 @@ def test_e_and_J_are_those_before_the_step(scene, solver):
     assert not done.held.any()
 
 
+@given(scenes(), METHODS)
+def test_frames_that_are_known_already_change_nothing(scene, solver):
+    tree, theta, *_ = scene
+    done, again = (step(*scene, solver, frames=at) for at in (None, forward(tree, theta)))
+    for one, other in zip(done, again, strict=True):
+        assert_array_equal(one, other)
+
+
 @given(scenes(), METHODS, SEEDS)
 def test_a_locked_joint_never_moves(scene, solver, seed):
     tree, theta, _, _ = scene
@@ -301,6 +309,8 @@ REST, GOALS = good()["theta"], good()["targets"]
          r"max_error needs one number, or \(\.\.\., 4\), not \(2,\)"),
         ({"limits": "hold"}, TypeError, "limits must be a function, not 'hold'"),
         ({"cap": "whole", "max_step": 1}, TypeError, "cap must be a function, not 'whole'"),
+        ({"frames": forward(HUMAN[0], np.stack([REST] * 2))}, ValueError,
+         r"frames are of poses \(2, 20\), not \(20,\)"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_named(wrong, error, match):
