@@ -34,7 +34,8 @@ HERE = Path(__file__).resolve().parent
 
 # A student's server: the course, brought up to date and never overwritten, in a folder of theirs.
 # start.py does that as the student. (nbgitpuller does it too, from a git repository and by a link:
-# then set cmd = ["jupyterhub-singleuser"], notebook_dir = "" and default_url = "/lab" in yours.)
+# then set cmd = ["jupyterhub-singleuser"], notebook_dir = "" and default_url = "/lab" in yours. The
+# sockets of kernels then lie in the homes, the path of which may have 28 characters.)
 c.Spawner.cmd = [sys.executable, str(HERE / "start.py")]
 c.Spawner.notebook_dir = "~/ikteach-course"
 c.Spawner.default_url = "/lab/tree/00_figure.ipynb"

@@ -26,6 +26,8 @@ async def lesson(folder):
         for server in hub.servers().values():
             (kernel,) = server.children()
             assert kernel.nice() > server.nice()
+            sockets = {one.laddr[-6:] for one in kernel.net_connections("unix")}
+            assert {f"-ipc-{i}" for i in range(1, 6)} <= sockets  # no ports, which others may take
         assert mine.read_text() == "mine"
         folders = [hub.homes / one.name / "ikteach-course" for one in students]
         return seen, [{file.name for file in folder.iterdir()} for folder in folders]
