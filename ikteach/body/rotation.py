@@ -4,7 +4,7 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike
 
-TINY = 1e-300  # keeps 0 / 0 away where start and end are one
+TINY = 1e-150  # keeps 0 / 0 away where start and end are one
 EY = np.array([0.0, 1, 0])
 
 
@@ -17,9 +17,9 @@ def sticks(start: Array, end: Array) -> Array:
     """[R | p] (..., 3, 4) that lays the segment from (0, 0, 0) to (0, 1, 0) along start → end.
 
     The second column of R is end − start, so that R also stretches; the others have length 1.
-    They come of the mirror that takes the y axis e to ∓y: I − 2wwᵀ / wᵀw with w = y ± e, by
-    the sign of y's second number; two of its columns are across y, and one of them is turned round
-    where left would be right.
+    They are those of the mirror that takes e = (0, 1, 0) to ∓y: I − 2wwᵀ / wᵀw with w = y ± e, the
+    sign being that of y's second number; where it is −, one of them is turned round, for a mirror
+    image is no motion.
     """
     along = end - start
     length = np.sqrt(np.vecdot(along, along))[..., None]

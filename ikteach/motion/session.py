@@ -11,6 +11,7 @@ from dataclasses import replace
 from functools import partial
 from itertools import islice
 from time import monotonic
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -47,7 +48,8 @@ class Session:
     options   go to `step`, the same for all methods; set them with `adjust`
     caps      {method: max_step [rad] or None}: the step caps of methods that have their own; set
               them with `bound`
-    frames    where the joints are, in the pose of each method (M, ...)
+    theta     {method: pose (n,)} [rad], and
+    frames    where the joints of each are (M, ...); both are for looking at
     keep      how many ticks the record holds; `dropped` counts those it has let go
     events    the last changes, notes and errors; `events_dropped` counts those it has let go
     """
@@ -319,8 +321,9 @@ class Session:
 
     def _stand(self, poses: Array) -> None:
         """Put the figure of each method into its pose (M, n) [rad]."""
+        poses.setflags(write=False)  # a pose that is changed would no longer be that of the frames
         self._poses, self.frames = poses, forward(self.tree, poses)
-        self.theta = dict(zip(self.methods, poses, strict=True))
+        self.theta = MappingProxyType(dict(zip(self.methods, poses, strict=True)))
 
     def _change(
         self, kind: str, what: Mapping[str, Any], *, going_on: bool = False, **state: Any

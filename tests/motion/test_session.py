@@ -60,6 +60,10 @@ def test_frames_are_those_of_the_poses(session):
         assert_allclose(session.error, np.linalg.norm(session.targets - s, axis=-1))
     with pytest.raises(LookupError, match="no method 'dsl'"):
         session.frames_of("dsl")
+    with pytest.raises(TypeError, match="does not support item assignment"):
+        session.theta["dls"] = session.tree.rest
+    with pytest.raises(ValueError, match="read-only"):
+        session.theta["dls"][0] = 1
 
 
 def test_ahead_is_where_the_next_tick_goes(session):
