@@ -3,7 +3,9 @@
 import asyncio
 from types import SimpleNamespace
 
+import pytest
 from jupyter_server.services.kernels.kernelmanager import AsyncMappingKernelManager
+from jupyter_server.services.kernels.websocket import KernelWebsocketHandler
 
 from ikteach.server import _load_jupyter_server_extension
 
@@ -47,7 +49,8 @@ async def activity() -> tuple[list[bytes], list[str]]:
     return heard, stood
 
 
-def test_the_server_watches_cells_and_not_frames() -> None:
+def test_the_server_watches_cells_and_not_frames(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(KernelWebsocketHandler, "open", KernelWebsocketHandler.open)  # afterwards
     heard, stood = asyncio.run(activity())
     assert {"busy", "idle"} <= set(stood)
     assert any(one.startswith(b"stream.stdout") for one in heard)

@@ -21,6 +21,7 @@ from ikteach import dls, figures, forward, jacobian, locate, sdls, step
 
 DAMPING = 0.1
 BATCH = 1000
+FEW = 100  # poses, as of a crowd, or of a grid of starts
 
 tree, effectors = figures.human()
 # Well inside the limits, so that a step is one solve; that of a held joint is one more.
@@ -59,7 +60,7 @@ def damped(J, e):
 def comparisons():
     """{what: (A, B, turns in a round, the most that A may cost in units of B)}."""
     theta, targets, J, e = problem()
-    many = problem(BATCH)
+    many, few = problem(BATCH), problem(FEW)[:2]
     identity = DAMPING**2 * np.eye(12)
 
     def bare():
@@ -80,6 +81,9 @@ def comparisons():
     def foil():
         return textbook.dls_step(tree, effectors, theta, targets, DAMPING)
 
+    def foil_few():
+        return [textbook.dls_step(tree, effectors, *one, DAMPING) for one in zip(*few, strict=True)]
+
     return {
         "DLS step, public calls / bare solve": (public(damped), bare, 400, 5),
         "DLS step(...)           / bare solve": (door(damped), bare, 400, 5),
@@ -89,6 +93,7 @@ def comparisons():
         "1000 poses, step(...)    / bare solves": (door(damped, *many[:2]), bare_many, 2, 4.5),
         "textbook loops / DLS step, public calls": (foil, public(damped), 20, None),
         "textbook loops / DLS step(...)": (foil, door(damped), 20, None),
+        "100 poses, textbook loops / public calls": (foil_few, public(damped, *few), 1, None),
     }
 
 

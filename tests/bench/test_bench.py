@@ -19,8 +19,9 @@ def test_speed_compares_things_that_do_the_same():
 
 def test_speed_prints_its_table(capsys, monkeypatch):
     monkeypatch.setattr(speed, "BATCH", 3)
+    monkeypatch.setattr(speed, "FEW", 2)
     speed.main(rounds=1)
-    assert capsys.readouterr().out.count("\n") == 9
+    assert capsys.readouterr().out.count("\n") == 10
 
 
 def test_damping_prints_its_table(capsys):

@@ -103,9 +103,10 @@ class Lecture(Voila):  # type: ignore[misc]
         self.template_paths.insert(0, str(LOOK))
 
     def init_settings(self) -> dict[str, Any]:
-        """The settings of the server; small messages go out at once."""
+        """The settings of the server; frames go out in time."""
+        settings = dict(super().init_settings())
         server._load_jupyter_server_extension(self)
-        return dict(super().init_settings())
+        return settings
 
     def init_handlers(self) -> list[Any]:
         """Pages, but no list of files; the root is the first page."""
