@@ -224,11 +224,11 @@ class Session:
         )  # fmt: skip
         self._stand(to.theta)
         self.dropped += len(self.record) == self.record.maxlen
-        shown = list(self.methods).index(self.method)
         self.record.append(
             Moment(
-                self.ticks, self.time, self.phase, self.advance, self.floor, shown, self.targets,
-                to.theta, self._distances(), to.capped, to.held,
+                self.ticks, self.time, self.phase, self.advance, self.floor,
+                self._row(self.method), self.targets, to.theta, self._distances(), to.capped,
+                to.held,
             )
         )  # fmt: skip
 
@@ -236,8 +236,8 @@ class Session:
 
     def frames_of(self, method: str) -> Frames:
         """Where the joints are, in the pose of a method."""
-        i = list(self.methods).index(self._known(method))
-        return Frames(*(part[i] for part in self.frames))
+        row = self._row(method)
+        return Frames(*(part[row] for part in self.frames))
 
     def options_of(self, method: str) -> dict[str, Any]:
         """What goes to `step` for a method."""
@@ -254,7 +254,7 @@ class Session:
     @property
     def error(self) -> Array:
         """Distance of each effector of the shown method to its target, (k,) [m]."""
-        return self._distances()[list(self.methods).index(self.method)]
+        return self._distances()[self._row(self.method)]
 
     def _distances(self) -> Array:
         """Distance of each effector to its target, by each method, (M, k) [m]."""
@@ -350,6 +350,10 @@ class Session:
         last = self.events[-1] if self.events else None
         recent = monotonic() - self._moved < ONE_MOVE
         return bool(recent and last and last.kind == kind and last.what.keys() == what.keys())
+
+    def _row(self, method: str) -> int:
+        """The row of a method in whatever has a row for each, (M, ...)."""
+        return list(self.methods).index(self._known(method))
 
     def _known(self, method: str) -> str:
         if method not in self.methods:
