@@ -215,7 +215,7 @@ CHANGES = {
     "aim": lambda s: s.aim("hand.r", s.targets[2] + 0.01),
     "hand": lambda s: setattr(s, "by_hand", not s.by_hand),
     "adjust": lambda s: s.adjust(max_step=(s.options.get("max_step") or 0.1) * 2),
-    "use": lambda s: s.use("dls", partial(dls, damping=0.2)),
+    "use": lambda s: s.use("dls", partial(dls, damping=0.1 * len(s.events) + 0.2)),
 }
 
 
