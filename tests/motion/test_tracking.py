@@ -142,7 +142,7 @@ def test_run(x, r):
     chaotic = abs(means[0] - means[1]) > PARTED
     assert np.isfinite(theta).all()
     if mean is not None:
-        assert_allclose(means[0], run[mean], rtol=0, atol=5e-3 if chaotic else 5e-6)
+        assert_allclose(means[0], run[mean], rtol=0, atol=5e-3 if chaotic else 1e-6)
     tree, effectors = model("yshape")
     for checkpoint in run["checkpoints"]:
         frame = checkpoint["step"] - 1
