@@ -9,10 +9,9 @@ from dataclasses import dataclass
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from ikteach.course import record
 from ikteach.course.notice import box
+from ikteach.files import bounded
 
 if TYPE_CHECKING:
     from ikteach.course.widget import Question
@@ -43,9 +42,13 @@ def predict(
     if numbers is None and len(options) < 2:
         raise ValueError(f"{key!r} needs options to choose from, or numbers=(low, high, unit)")
     known = record.entry("predictions", key)
+
+    def answered(answer: Any) -> str:
+        return _store(key, answer) if fits(answer, kind, options, numbers) else NO_ANSWER
+
     shown = Question(
         key,
-        lambda answer: _store(key, answer),
+        answered,
         kind=kind,
         question=question,
         note=explain or "",
@@ -60,6 +63,7 @@ def predict(
     return shown
 
 
+NO_ANSWER = "That is no answer to this question."
 CHANGE = " You can change it until the result is shown."
 LOCKED = " It is locked: the result has been shown."
 
@@ -71,7 +75,7 @@ def fits(
     if kind == "number":
         assert numbers is not None
         real = isinstance(answer, Real) and not isinstance(answer, bool)
-        return real and numbers[0] <= float(answer) <= numbers[1]
+        return real and bool(numbers[0] <= answer <= numbers[1])
     if kind == "ranking":
         return isinstance(answer, list) and sorted(map(str, answer)) == sorted(options)
     return answer in options
@@ -131,7 +135,7 @@ def reveal(key: str, answer: Any, because: str | None = None) -> Revealed:
     because  a sentence on why
     A prediction that was not made stays open: the result is shown all the same.
     """
-    result = plain(answer)
+    result = record.plain(answer)
     known = record.entry("predictions", key)
     trouble = record.store("predictions", key, result=result)
     _lock(key)
@@ -167,12 +171,11 @@ def quiz(
         if name not in options:
             raise LookupError(unknown(f"option of {key!r}", name, options))
 
-    def judge(answer: str) -> str:
+    def judge(answer: Any) -> str:
+        if answer not in options:
+            return NO_ANSWER
         good = answer == right
-        known = record.entry("quiz", key)
-        trouble = record.store(
-            "quiz", key, answer=answer, right=good, tries=known.get("tries", 0) + 1
-        )
+        trouble = record.store("quiz", key, again=True, answer=answer, right=good)
         verdict = "✓ Right." if good else "✗ Not so."
         return f"{verdict} {reasons.get(answer, '')} {trouble}".strip()
 
@@ -181,19 +184,8 @@ def quiz(
     )  # fmt: skip
 
 
-def plain(value: Any) -> Any:
-    """A value of numpy's as Python's own: what JSON can hold."""
-    if isinstance(value, np.ndarray | np.generic):
-        value = value.tolist()
-    if isinstance(value, list | tuple):
-        return [plain(one) for one in value]
-    return value if isinstance(value, str | int | float | bool) or value is None else str(value)
-
-
 def words(value: Any) -> str:
     """An answer as a person writes it."""
     if isinstance(value, list):
-        return ", then ".join(map(words, value))
-    if isinstance(value, float):
-        return f"{value:.4g}"
-    return str(value)
+        return bounded(", then ".join(map(words, value)), 1000)
+    return f"{value:.4g}" if isinstance(value, float) else bounded(str(value), 1000)

@@ -1,8 +1,8 @@
 """What a student has answered, in one file beside the notebook: `predictions.json`.
 
-The file is read anew before each writing and replaced in one step. One that cannot be read is set
-aside, never overwritten; where nothing can be written, answers live in memory and the course goes
-on.
+The file is read anew before each writing and replaced in one step, by one kernel after the other.
+One that cannot be read is set aside, never overwritten; where nothing can be written, answers live
+in memory and the course goes on.
 """
 
 import json
@@ -12,23 +12,44 @@ from pathlib import Path
 from threading import RLock
 from typing import Any
 
+import numpy as np
+
+from ikteach import files
 from ikteach.course.notice import Notice
 
 FILE = "predictions.json"
 KINDS = ("predictions", "verdicts", "quiz")
 KEPT = "your answers are kept until the kernel stops."
+MOST = 50 * 2**20  # bytes of a file of answers; an exported log may be in it
+MANY = 5000  # answers of a kind
+FIELDS = 100  # of an answer
 
 Entry = dict[str, Any]
 Answers = dict[str, dict[str, Entry]]  # kind (one of KINDS) -> key -> entry
 
 _lock = RLock()  # widgets may call from another thread
 _unsaved: dict[Path, Answers] = {}  # what could not be written, per folder
+_folder: Path | None = None
+
+
+def home() -> Path:
+    """The folder of the answers: the one in which the kernel was when it was first asked.
+
+    That is the notebook's, wherever its cells go later.
+    """
+    global _folder
+    if _folder is None:
+        try:
+            _folder = Path.cwd()
+        except OSError:  # it was removed under us
+            return Path()
+    return _folder
 
 
 def entries(kind: str) -> dict[str, Entry]:
     """Key -> entry of all that is known of this kind here; changing it changes nothing."""
     with _lock:
-        answers, _ = _read(Path.cwd())
+        answers, _ = _read(home())
         return answers.get(kind, {})
 
 
@@ -37,23 +58,25 @@ def entry(kind: str, key: str) -> Entry:
     return entries(kind).get(key, {})
 
 
-def store(kind: str, key: str, **fields: Any) -> str:
-    """Add these fields under the key, at once; a sentence if something is amiss, else ''."""
-    folder = Path.cwd()
+def store(kind: str, key: str, *, again: bool = False, **fields: Any) -> str:
+    """Add these fields under the key, at once; a sentence if something is amiss, else ''.
+
+    `again` counts this as another try, in the field `tries`.
+    """
+    folder = home()
     with _lock:
-        answers, trouble = _read(folder, set_aside=True)
-        fields["at"] = datetime.now(UTC).isoformat(timespec="seconds")
-        known = answers.setdefault(kind, {})
-        known[key] = known.get(key, {}) | fields
-        if not trouble or not _exists(folder / FILE):
-            try:
-                _write(folder / FILE, answers)
-                _unsaved.pop(folder, None)
-                return trouble
-            except OSError as error:
-                trouble = f"{trouble} {_unwritable(error)}".strip()
-        mine = _unsaved.setdefault(folder, {}).setdefault(kind, {})
-        mine[key] = known[key]
+        try:
+            with files.alone(folder / FILE):
+                answers, trouble = _read(folder, set_aside=True)
+                known = _add(answers, kind, key, fields, again)
+                if not trouble or not os.path.lexists(folder / FILE):
+                    files.write_whole(folder / FILE, _json(answers), overwrite=True)
+                    _unsaved.pop(folder, None)
+                    return trouble
+        except OSError as error:
+            answers, _ = _read(folder)
+            known, trouble = _add(answers, kind, key, fields, again), f"{error}: {KEPT}"
+        _unsaved.setdefault(folder, {}).setdefault(kind, {})[key] = known
         return trouble
 
 
@@ -65,54 +88,96 @@ def export(path: str | os.PathLike[str], log: Any = None, *, overwrite: bool = F
     """
     target = Path(path)
     if log is not None and not hasattr(log, "to_json"):
-        return Notice(f"Nothing written: `log` must be a DataFrame, not {log!r}.", "bad")
-    if target.resolve() == (Path.cwd() / FILE).resolve():
+        what = files.quoted(log)
+        return Notice(f"Nothing written: `log` must be a DataFrame, not {what}.", "bad")
+    if os.path.realpath(target) == os.path.realpath(home() / FILE):
         return Notice(f"Nothing written: {FILE} is where your answers live; name another.", "bad")
-    if _exists(target) and not overwrite:
+    with _lock:
+        answers, trouble = _read(home())
+    try:
+        table = None if log is None else json.loads(log.to_json(orient="split", index=False))
+    except (ValueError, OverflowError, RecursionError) as error:
+        why = files.bounded(str(error))
+        return Notice(f"Nothing written: `log` cannot be put into a file ({why}).", "bad")
+    content = {**{kind: answers.get(kind, {}) for kind in KINDS}, "log": table}
+    try:
+        files.write_whole(target, _json(content), overwrite=overwrite)
+    except FileExistsError:
         hint = f"`export({str(path)!r}, …, overwrite=True)` replaces it"
         return Notice(f"{path} exists already and was left alone: {hint}.", "bad")
-    with _lock:
-        answers, trouble = _read(Path.cwd())
-    table = None if log is None else json.loads(log.to_json(orient="split", index=False))
-    try:
-        _write(target, {**{kind: answers.get(kind, {}) for kind in KINDS}, "log": table})
     except OSError as error:
-        return Notice(f"{path} could not be written: {error.strerror or error}.", "bad")
+        return Notice(f"{files.bounded(str(path))} could not be written: {error}.", "bad")
     counts = ", ".join(f"{len(answers.get(kind, {}))} {kind}" for kind in KINDS)
     rows = f", a log of {len(log)} rows" if log is not None else ""
     return Notice(f"Written to {path}: {counts}{rows}. {trouble}".strip(), "good")
+
+
+def valid(answers: Any) -> Answers:
+    """The answers if they have the form that we write; ValueError says what has not."""
+    if not isinstance(answers, dict):
+        raise ValueError("it holds no answers of this course")
+    for kind in KINDS:
+        group = answers.get(kind, {})
+        if not isinstance(group, dict) or len(group) > MANY:
+            raise ValueError(f"its {kind} have a form that is not ours")
+        for key, one in group.items():
+            if not isinstance(one, dict) or len(one) > FIELDS or not _fit(one):
+                raise ValueError(f"its {kind} have a form that is not ours, at {files.quoted(key)}")
+    return answers
+
+
+def plain(value: Any) -> Any:
+    """A value of numpy's as Python's own: what JSON can hold, and every reader can read."""
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, list | tuple):
+        return [plain(one) for one in value]
+    if isinstance(value, bool) or value is None:
+        return value
+    if isinstance(value, int | float) and abs(value) < 1e300:  # neither NaN nor infinite
+        return value
+    try:
+        return files.bounded(str(value), 2000)
+    except Exception:  # an object that cannot be told in words
+        return files.quoted(value)
+
+
+def _fit(entry: Entry) -> bool:
+    tries = entry.get("tries", 0)
+    return type(tries) is int and tries >= 0 and isinstance(entry.get("at", ""), str)
+
+
+def _add(answers: Answers, kind: str, key: str, fields: Entry, again: bool) -> Entry:
+    """Put the fields into the answers, and give the entry that they are now in."""
+    group = answers.setdefault(kind, {})
+    known = group.get(key, {})
+    tries = {"tries": known.get("tries", 0) + 1} if again else {}
+    now = datetime.now(UTC).isoformat(timespec="seconds")
+    new = {name: plain(value) for name, value in fields.items()}
+    group[key] = known | new | tries | {"at": now}
+    return group[key]
 
 
 def _read(folder: Path, *, set_aside: bool = False) -> tuple[Answers, str]:
     """The answers of the file and of memory, and a sentence if the file is no good."""
     path, answers, trouble = folder / FILE, {}, ""
     try:
-        answers = _valid(json.loads(path.read_text(encoding="utf-8")))
+        answers = valid(files.read_json(path, MOST))
     except FileNotFoundError:
         pass
     except ValueError:  # not JSON, not UTF-8, or JSON of something else
         trouble = _set_aside(path) if set_aside else f"{FILE} is damaged and was left out."
     except OSError as error:
-        trouble = f"{FILE} cannot be read ({error.strerror}): {KEPT}"
+        trouble = f"{error}: {KEPT}"
     for kind, known in _unsaved.get(folder, {}).items():
         answers.setdefault(kind, {}).update(known)
     return answers, trouble
 
 
-def _valid(answers: Any) -> Answers:
-    """The answers if they have the form that we write; ValueError if not."""
-    if not isinstance(answers, dict):
-        raise ValueError
-    for group in answers.values():
-        if not (isinstance(group, dict) and all(isinstance(one, dict) for one in group.values())):
-            raise ValueError
-    return answers
-
-
 def _set_aside(path: Path) -> str:
     """Give a damaged file another name, so that it can be looked at, and say so."""
     names = (path.with_name(f"{path.stem}.damaged-{i}{path.suffix}") for i in range(1, 1000))
-    beside = next(name for name in names if not _exists(name))
+    beside = next(name for name in names if not os.path.lexists(name))
     try:
         os.rename(path, beside)
     except OSError as error:
@@ -120,19 +185,5 @@ def _set_aside(path: Path) -> str:
     return f"{FILE} was damaged; it is now {beside.name}, and a new one was begun."
 
 
-def _unwritable(error: OSError) -> str:
-    return f"{FILE} cannot be written ({error.strerror or error}): {KEPT}"
-
-
-def _exists(path: Path) -> bool:
-    return os.path.lexists(path)
-
-
-def _write(path: Path, content: Any) -> None:
-    """Replace the file in one step: after a crash there is the old one or the new, never half."""
-    draft = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        draft.write_text(json.dumps(content, indent=1, ensure_ascii=False), encoding="utf-8")
-        os.replace(draft, path)
-    finally:
-        draft.unlink(missing_ok=True)
+def _json(content: Any) -> str:
+    return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False)

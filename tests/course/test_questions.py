@@ -24,14 +24,14 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+def denied(*_: Any, **__: Any) -> None:
+    raise PermissionError(13, "Permission denied")
+
+
 @pytest.fixture
 def readonly(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder that cannot be written to, for root too."""
-
-    def denied(*_: Any, **__: Any) -> None:
-        raise PermissionError(13, "Permission denied")
-
-    monkeypatch.setattr(Path, "write_text", denied)
+    monkeypatch.setattr(os, "open", denied)
     monkeypatch.setattr(os, "rename", denied)
     return folder
 
@@ -214,11 +214,14 @@ def test_where_nothing_can_be_written_answers_live_in_memory(
     assert stored(readonly)[KEY]["answer"] == "slower"  # what was in memory is in the file now
 
 
-def test_a_damaged_file_that_cannot_be_set_aside_is_left_alone(readonly: Path) -> None:
-    (readonly / "predictions.json").write_bytes(b"{")
+def test_a_damaged_file_that_cannot_be_set_aside_is_left_alone(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(os, "rename", denied)
+    (folder / "predictions.json").write_bytes(b"{")
     said = answer(ask(), "slower")
     assert "is damaged and cannot be set aside (Permission denied)" in said
-    assert (readonly / "predictions.json").read_bytes() == b"{"
+    assert (folder / "predictions.json").read_bytes() == b"{"
     assert ask().answer == "slower"
 
 
