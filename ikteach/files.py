@@ -20,6 +20,8 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, TypeVar
 
+import numpy as np
+
 Name = str | os.PathLike[str]
 T = TypeVar("T")
 
@@ -42,6 +44,8 @@ SIGNS = {
     b"HIERARCHY": "motion capture, a BVH file",
     b"<robot": "a robot, a URDF file",
     b"<?xml": "XML, as a URDF file is",
+    b"<!--": "XML, as a URDF file is",
+    b"<!DOCTYPE html": "a web page",
 }
 
 _short = reprlib.Repr()
@@ -59,9 +63,14 @@ def quoted(value: Any) -> str:
 
 def bounded(words: str, most: int = 400) -> str:
     """Give a text of at most `most` letters; what is too much is left out of its middle."""
-    words = words.encode("utf-8", "replace").decode()  # half characters can be sent to nobody
     half = (most - 3) // 2
-    return words if len(words) <= most else f"{words[:half]} … {words[-half:]}"
+    short = words if len(words) <= most else f"{words[:half]} … {words[-half:]}"
+    return whole_characters(short)
+
+
+def whole_characters(text: str) -> str:
+    """Give a text without half characters, which can be written and sent nowhere."""
+    return HALF.sub("?", text)
 
 
 # Reading.
@@ -120,7 +129,7 @@ def read_json(path: Name, most: int) -> Any:
     except json.JSONDecodeError as error:
         raise ValueError(f"it is not JSON (line {error.lineno}: {error.msg})") from None
     except RecursionError:
-        raise ValueError("it is nested too deep") from None
+        raise ValueError("it is damaged: it is nested too deep") from None
     _check_sound(content)
     return content
 
@@ -149,10 +158,32 @@ def _check_sound(content: Any) -> None:
                 raise ValueError(f"it is damaged: {ascii(value)[:60]} has half a character")
         if not (level := inside):
             return
-    raise ValueError("it is nested too deep")
+    raise ValueError("it is damaged: it is nested too deep")
 
 
 # Writing.
+
+
+def plain(value: Any) -> Any:
+    """Give a value as Python's own and so that every reader of JSON can read it: no NaN, in words.
+
+    Arrays become lists, and what JSON does not know becomes a text of at most 400 letters.
+    """
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, dict):
+        return {bounded(str(name)): plain(one) for name, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(one) for one in value]
+    if isinstance(value, bool) or value is None:
+        return value
+    if isinstance(value, int | float) and abs(value) < 1e300:  # neither NaN nor infinite
+        return value
+    try:
+        text = str(value)
+        return whole_characters(text) if isinstance(value, str) else bounded(text)
+    except Exception:  # an object that cannot be told in words
+        return quoted(value)
 
 
 def write_whole(path: Name, content: str | bytes, *, overwrite: bool = False) -> None:
@@ -175,7 +206,7 @@ def drafted(path: Name, *, overwrite: bool = False) -> Iterator[Path]:
         _sweep(path)
         os.close(os.open(draft, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
         yield draft
-        _publish(draft, path, overwrite)
+        publish(draft, path, overwrite=overwrite)
     except OSError as error:
         if error.errno is None or error.filename not in (None, str(draft), str(path)):
             raise  # it is a sentence already, or not about this file
@@ -204,8 +235,8 @@ def _check_place(path: Path, overwrite: bool) -> None:
             raise PermissionError(f"{path.name} cannot be written (it is read-only)")
 
 
-def _publish(draft: Path, path: Path, overwrite: bool) -> None:
-    """Give the draft its name."""
+def publish(draft: Path, path: Path, *, overwrite: bool) -> None:
+    """Give the draft its name, in one step; the errors are those of `drafted`."""
     file = os.open(draft, os.O_RDWR)
     try:
         os.fsync(file)  # a full disk in the network is told of only here
@@ -225,6 +256,7 @@ def _publish(draft: Path, path: Path, overwrite: bool) -> None:
             os.rename(draft, path)  # refuses where there is one
         else:
             os.link(draft, path)
+            os.unlink(draft)
     except FileExistsError:
         raise taken(path) from None
     except OSError:  # no links on this disk

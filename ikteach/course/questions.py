@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ikteach.course import record
 from ikteach.course.notice import box
-from ikteach.files import bounded
+from ikteach.files import bounded, plain
 
 if TYPE_CHECKING:
     from ikteach.course.widget import Question
@@ -135,7 +135,7 @@ def reveal(key: str, answer: Any, because: str | None = None) -> Revealed:
     because  a sentence on why
     A prediction that was not made stays open: the result is shown all the same.
     """
-    result = record.plain(answer)
+    result = plain(answer)
     known = record.entry("predictions", key)
     trouble = record.store("predictions", key, result=result)
     _lock(key)

@@ -12,8 +12,6 @@ from pathlib import Path
 from threading import RLock
 from typing import Any
 
-import numpy as np
-
 from ikteach import files
 from ikteach.course.notice import Notice
 
@@ -23,6 +21,7 @@ KEPT = "your answers are kept until the kernel stops."
 MOST = 50 * 2**20  # bytes of a file of answers; an exported log may be in it
 MANY = 5000  # answers of a kind
 FIELDS = 100  # of an answer
+LONGEST = 2000  # letters of a field
 
 Entry = dict[str, Any]
 Answers = dict[str, dict[str, Entry]]  # kind (one of KINDS) -> key -> entry
@@ -126,22 +125,6 @@ def valid(answers: Any) -> Answers:
     return answers
 
 
-def plain(value: Any) -> Any:
-    """A value of numpy's as Python's own: what JSON can hold, and every reader can read."""
-    if isinstance(value, np.ndarray | np.generic):
-        value = value.tolist()
-    if isinstance(value, list | tuple):
-        return [plain(one) for one in value]
-    if isinstance(value, bool) or value is None:
-        return value
-    if isinstance(value, int | float) and abs(value) < 1e300:  # neither NaN nor infinite
-        return value
-    try:
-        return files.bounded(str(value), 2000)
-    except Exception:  # an object that cannot be told in words
-        return files.quoted(value)
-
-
 def _fit(entry: Entry) -> bool:
     tries = entry.get("tries", 0)
     return type(tries) is int and tries >= 0 and isinstance(entry.get("at", ""), str)
@@ -153,9 +136,15 @@ def _add(answers: Answers, kind: str, key: str, fields: Entry, again: bool) -> E
     known = group.get(key, {})
     tries = {"tries": known.get("tries", 0) + 1} if again else {}
     now = datetime.now(UTC).isoformat(timespec="seconds")
-    new = {name: plain(value) for name, value in fields.items()}
+    new = {name: _brief(files.plain(value)) for name, value in fields.items()}
     group[key] = known | new | tries | {"at": now}
     return group[key]
+
+
+def _brief(value: Any) -> Any:
+    """A value as it is, or what a file that is written anew at each answer can hold of it."""
+    text = value if isinstance(value, str) else json.dumps(value)
+    return value if len(text) <= LONGEST else files.bounded(text, LONGEST)
 
 
 def _read(folder: Path, *, set_aside: bool = False) -> tuple[Answers, str]:

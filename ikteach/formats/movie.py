@@ -6,9 +6,8 @@ it works within the process, needs no program on the path, and reads back what i
 
 import os
 import sys
-import tempfile
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from fractions import Fraction
 from math import isfinite
 from numbers import Integral, Real
@@ -17,6 +16,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+
+from ikteach.files import drafted, quoted, taken
 
 Pixels = npt.NDArray[np.uint8]  # (height, width, 3), red green blue
 
@@ -103,16 +104,11 @@ def writing(
     av = library()
     path = Path(path)
     kind = check(path, size=size, rate=rate, overwrite=overwrite)
-    draft = _draft(path)
-    try:
-        with av.open(str(draft), "w", format=path.suffix[1:].lower()) as container:
-            yield from _into(container, kind, size, Fraction(rate).limit_denominator(1001))
-        if not overwrite and path.exists():  # it came while we filmed
-            raise FileExistsError(_taken(path))
-        os.replace(draft, path)
-    finally:
-        with suppress(FileNotFoundError):
-            draft.unlink()
+    with (
+        drafted(path, overwrite=overwrite) as draft,
+        av.open(str(draft), "w", format=path.suffix[1:].lower()) as container,
+    ):
+        yield from _into(container, kind, size, Fraction(rate).limit_denominator(1001))
 
 
 def check(
@@ -148,20 +144,20 @@ def check(
     if not os.access(path.parent, os.W_OK):
         raise PermissionError(f"nothing can be written in the folder {str(path.parent)!r}")
     if path.exists() and not overwrite:
-        raise FileExistsError(_taken(path))
+        raise taken(path)
     return kind
 
 
 def read(path: str | os.PathLike[str]) -> Iterator[Pixels]:
     """The frames of a movie file, one by one."""
-    with _open(path) as container:
+    with _open(path) as container, _whole(path):
         for frame in container.decode(video=0):
             yield frame.to_ndarray(format="rgb24")
 
 
 def facts(path: str | os.PathLike[str]) -> Facts:
     """Size, rate and number of frames of a movie file, counted by reading it through."""
-    with _open(path) as container:
+    with _open(path) as container, _whole(path):
         stream = container.streams.video[0]
         times = sorted(float(frame.pts * frame.time_base) for frame in container.decode(stream))
         rate = float(stream.average_rate or 0)
@@ -181,15 +177,23 @@ def library() -> Any:
 
 def _open(path: str | os.PathLike[str]) -> Any:
     av = library()
-    if not Path(path).exists():
-        raise FileNotFoundError(f"there is no movie {str(path)!r}")
-    try:
+    if not os.path.isfile(path):
+        raise FileNotFoundError(f"there is no movie {quoted(str(path))}")
+    with _whole(path):
         container = av.open(str(path))
-    except av.error.FFmpegError:
-        raise ValueError(f"{str(path)!r} is not a movie that can be read") from None
     if not container.streams.video:
-        raise ValueError(f"{str(path)!r} has no pictures in it")
+        raise ValueError(f"{quoted(str(path))} has no pictures in it")
     return container
+
+
+@contextmanager
+def _whole(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Say in a sentence what FFmpeg says of a file that is damaged or no movie."""
+    av = library()
+    try:
+        yield
+    except (av.error.FFmpegError, TypeError, ZeroDivisionError):  # frames without times
+        raise ValueError(f"{quoted(str(path))} is not a movie that can be read") from None
 
 
 def _into(
@@ -244,16 +248,6 @@ def _palette(av: Any, stream: Any, rate: Fraction) -> Callable[[Any], Any]:
     return convert
 
 
-def _draft(path: Path) -> Path:
-    """An empty file in the same folder, so that giving it its name is one step."""
-    handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=".part", dir=path.parent)
-    os.close(handle)
-    umask = os.umask(0)
-    os.umask(umask)
-    os.chmod(name, 0o666 & ~umask)  # mkstemp keeps its files to itself
-    return Path(name)
-
-
 def _size_of(pixels: Pixels) -> tuple[int, int]:
     if not (isinstance(pixels, np.ndarray) and pixels.ndim == 3 and pixels.shape[2] == 3):
         what = getattr(pixels, "shape", type(pixels).__name__)
@@ -261,7 +255,3 @@ def _size_of(pixels: Pixels) -> tuple[int, int]:
     if pixels.dtype != np.uint8:
         raise ValueError(f"a frame is made of uint8, 0 to 255, not of {pixels.dtype}")
     return pixels.shape[1], pixels.shape[0]
-
-
-def _taken(path: Path) -> str:
-    return f"there is a file {str(path)!r} already; overwrite=True would replace it"
