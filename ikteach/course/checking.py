@@ -9,14 +9,15 @@ student's answer that returns when all is right and raises `WrongError` with a s
             expect(answer(x) == 2 * x, f"`{answer.call}` must be twice its argument.")
 
 What every answer may do wrong (raise, return None, a NaN or a wrong shape, never end, change what
-it was given) is dealt with here, for all of them.
+it was given or what others use) is dealt with here, for all of them.
 """
 
 import copy
+import dis
 import importlib
 import linecache
+import re
 import traceback
-import warnings
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -27,10 +28,13 @@ import numpy as np
 from ikteach.course import record
 from ikteach.course.deadline import TooLongError, deadline
 from ikteach.course.notice import LOOK, Mood, box, paragraph
+from ikteach.course.untouched import Unpatched, untouched
+from ikteach.files import bounded
 from ikteach.names import unknown
 
 NOT_YET = "Not yet"
 SECONDS = 5.0  # what a check may take in all
+LONGEST = 500  # letters of a sentence
 
 Shape = tuple[int, ...]
 Returns = Shape | type | Callable[..., Shape] | None
@@ -46,12 +50,15 @@ class NotYetError(Exception):
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a check found. `hint` is empty when there is none to give."""
+    """What a check found; true only if it passed. `hint` is empty when there is none to give."""
 
     key: str
     passed: bool
     sentence: str
     hint: str = ""
+
+    def __bool__(self) -> bool:
+        return self.passed
 
     @property
     def mood(self) -> Mood:
@@ -115,10 +122,12 @@ def expect(holds: Any, sentence: str) -> None:
         raise WrongError(sentence)
 
 
-def check(key: str, answer: Any) -> Verdict:
+def check(key: str, answer: Any, *, strict: bool = False) -> Verdict:
     """Whether the exercise `key` is solved by `answer`, a function or a value, in a sentence.
 
-    Each failure in a row gives the next hint. LookupError for an unknown key.
+    Each failure in a row gives the next hint. LookupError for an unknown key. The verdict is true
+    only if it is solved; `strict` raises AssertionError with the sentence if not, for graders that
+    go by what a cell raises.
     """
     verdict = judge(find(key), answer)
     if verdict.mood == "bad":
@@ -128,10 +137,12 @@ def check(key: str, answer: Any) -> Verdict:
         verdict = Verdict(key, False, verdict.sentence, hint)
     elif verdict.passed:
         _failures.pop(key, None)
-    tries = record.entry("verdicts", key).get("tries", 0) + 1
-    fields = {"passed": verdict.passed, "sentence": verdict.sentence, "tries": tries}
-    trouble = record.store("verdicts", key, **fields)
-    return Verdict(key, verdict.passed, f"{verdict.sentence} {trouble}".strip(), verdict.hint)
+    fields = {"passed": verdict.passed, "sentence": verdict.sentence}
+    trouble = record.store("verdicts", key, again=True, **fields)
+    verdict = Verdict(key, verdict.passed, f"{verdict.sentence} {trouble}".strip(), verdict.hint)
+    if strict and not verdict:
+        raise AssertionError(str(verdict))
+    return verdict
 
 
 def find(key: str) -> Exercise:
@@ -149,26 +160,37 @@ def find(key: str) -> Exercise:
 
 def judge(task: Exercise, answer: Any) -> Verdict:
     """The verdict on an answer, without hints and without a record of it."""
-    named = task.key.partition(".")[2]
-    name = getattr(answer, "__name__", named).replace("<lambda>", named)
+    name = _name(answer, task.key.partition(".")[2])
+
+    def verdict(passed: bool, sentence: str) -> Verdict:
+        return Verdict(task.key, passed, bounded(" ".join(sentence.split()), LONGEST))
+
     try:
-        with deadline(task.seconds):
+        with untouched(), deadline(task.seconds):
             if answer is None or answer is ...:
                 raise NotYetError
             task.checker(_value(task, answer) if task.value else _function(task, answer, name))
     except NotYetError as error:
-        return Verdict(task.key, False, f"{NOT_YET}: {str(error) or 'write your answer first.'}")
+        return verdict(False, f"{NOT_YET}: {str(error) or 'write your answer first.'}")
     except WrongError as wrong:
-        return Verdict(task.key, False, str(wrong))
+        return verdict(False, str(wrong))
     except TooLongError:
         stopped = f"`{name}` was stopped after {task.seconds:g} seconds: does a loop in it end?"
-        return Verdict(task.key, False, stopped)
+        return verdict(False, stopped)
     except Exception as error:  # ours, and not the student's: they are not to be left without word
-        broken = f"The check itself failed ({type(error).__name__}: {error}); this is a mistake of "
-        return Verdict(
-            task.key, False, broken + "the course, unless your answer is of an odd kind."
-        )
-    return Verdict(task.key, True, f"`{name}` passes every check.")
+        broken = f"The check itself failed ({_said(error)}); this is a mistake of the course, "
+        return verdict(False, broken + "unless your answer is of an odd kind.")
+    return verdict(True, f"`{name}` passes every check.")
+
+
+def _name(answer: Any, other: str) -> str:
+    """What a function calls itself, if that is a name."""
+    try:
+        name = answer.__name__
+    except Exception:
+        return other
+    proper = isinstance(name, str) and re.fullmatch(r"\w{1,60}", name)
+    return str(name) if proper else other
 
 
 class Answer:
@@ -185,9 +207,12 @@ class Answer:
         """The answer to these arguments, which stay as they are."""
         self.call = f"{self.name}({', '.join(map(brief, arguments))})"
         given = copy.deepcopy(arguments)
-        with np.errstate(all="ignore"), warnings.catch_warnings():
-            warnings.simplefilter("ignore")
+        try:
             result = self._run(given)
+        except (NotYetError, WrongError):
+            raise
+        except Exception as error:
+            raise WrongError(f"`{self.call}` {_told(error)}") from None
         for i, (before, after) in enumerate(zip(arguments, given, strict=True), start=1):
             if not _same(before, after):
                 changed = f"`{self.name}` changed its argument {i}: work on a copy of it."
@@ -205,11 +230,9 @@ class Answer:
         """What the function raises for these arguments; None if it returns."""
         self.call = f"{self.name}({', '.join(map(brief, arguments))})"
         try:
-            with np.errstate(all="ignore"), warnings.catch_warnings():
-                warnings.simplefilter("ignore")
-                result = self._function(*copy.deepcopy(arguments))
-        except NotImplementedError:
-            raise NotYetError(f"`{self.name}` still says that it is not implemented.") from None
+            result = self._run(copy.deepcopy(arguments))
+        except (NotYetError, WrongError):
+            raise
         except Exception as error:
             return error
         if result is ...:
@@ -217,20 +240,29 @@ class Answer:
         return None
 
     def _run(self, given: Sequence[Any]) -> Any:
+        """What the function returns; of exceptions it raises those that are errors, or ours."""
         try:
-            return self._function(*given)
+            with Unpatched():
+                return self._function(*given)
         except NotImplementedError:
             raise NotYetError(f"`{self.name}` still says that it is not implemented.") from None
+        except (Exception, TooLongError):
+            raise
         except SystemExit:
             raise WrongError(f"`{self.name}` ended with exit(); use return.") from None
-        except Exception as error:
+        except BaseException as error:
+            if isinstance(error, KeyboardInterrupt) and not _by_raise(error):
+                raise  # the student's own wish
             raise WrongError(f"`{self.call}` {_told(error)}") from None
 
 
 def _same(before: Any, after: Any) -> bool:
     """Whether an argument is as it was; of arrays and lists of numbers this can be told."""
     if isinstance(before, np.ndarray | list):
-        return np.array_equal(np.asarray(before), np.asarray(after), equal_nan=True)
+        try:
+            return np.array_equal(np.asarray(before), np.asarray(after), equal_nan=True)
+        except Exception:  # it is no longer made of numbers
+            return False
     return True
 
 
@@ -264,12 +296,12 @@ def of_form(result: Any, wanted: Any, said: str) -> Any:
         array = np.asarray(result)
         if array.dtype.kind not in "biuf":  # text, complex numbers, objects
             raise TypeError
-        array = array.astype(float)
-    except (TypeError, ValueError):
+    except Exception:  # whatever an object of the student's raises when it is to be an array
         raise WrongError(f"{said} {_kind(result)}, where {form} is wanted.") from None
     if array.shape != wanted:
         shape = f"an array of shape {array.shape}" if array.shape else "one number"
         raise WrongError(f"{said} {shape}, where {form} is wanted.")
+    array = array.astype(float)
     if np.isnan(array).any():
         raise WrongError(f"{said} NaN, which is no number: what was divided by zero?")
     if np.isinf(array).any():
@@ -288,18 +320,42 @@ def brief(value: Any) -> str:
 
 
 def _kind(value: Any) -> str:
-    return _a(type(value).__name__)
+    return _a(_type(value))
+
+
+def _type(value: Any) -> str:
+    """The name of its type: the true one, whatever its class says of itself."""
+    return bounded(type.__dict__["__name__"].__get__(type(value)) or "nameless type", 60)
 
 
 def _a(name: str) -> str:
-    return f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
+    return f"{'an' if name[0] in 'aeiouAEIOU' else 'a'} {name}"
 
 
-def _told(error: Exception) -> str:
+def _said(error: BaseException) -> str:
+    """What was raised and its first line, bounded."""
+    try:
+        text = str(error).strip()
+    except Exception:
+        text = ""
+    return f"{_type(error)}: {bounded((text or 'without a word').splitlines()[0], 200)}"
+
+
+def _told(error: BaseException) -> str:
     """What was raised and in which line of the student's, without a traceback."""
-    words = f"raised {type(error).__name__}: {str(error).strip() or 'without a word'}"
-    frames = traceback.extract_tb(error.__traceback__)[1:]  # the first is our own call
-    theirs = [frame for frame in frames if frame.filename == frames[0].filename] if frames else []
+    every = traceback.extract_tb(error.__traceback__)
+    frames = [frame for frame in every if frame.filename != __file__]  # but our own calls
+    theirs = [frame for frame in frames if frame.filename == frames[0].filename]
     line = linecache.getline(theirs[-1].filename, theirs[-1].lineno or 0).strip() if theirs else ""
-    end = f", in the line `{line}`" if line else ""
-    return f"{words.splitlines()[0].rstrip('.')}{end}."
+    end = f", in the line `{bounded(line, 120)}`" if line else ""
+    return f"raised {_said(error).rstrip('.')}{end}."
+
+
+def _by_raise(error: BaseException) -> bool:
+    """Whether a `raise` has raised it, and not a signal."""
+    trace = error.__traceback__
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    if trace is None:
+        return True
+    return trace.tb_frame.f_code.co_code[trace.tb_lasti] == dis.opmap["RAISE_VARARGS"]

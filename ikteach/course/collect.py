@@ -6,18 +6,27 @@ Nothing is changed, and nothing is passed over in silence: what cannot be read i
 """
 
 import argparse
-import json
+import os
+import re
 import sys
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import pandas as pd
 
 from ikteach.course.questions import words
-from ikteach.course.record import KINDS
+from ikteach.course.record import KINDS, MOST, valid
+from ikteach.files import bounded, read_json, whole_characters, write_whole
 
 NAMES = dict(zip(KINDS, ("prediction", "exercise", "quiz"), strict=True))
+SKIPPED = 3  # the exit code when all went well, but for files that were left out
+COLUMNS = 200  # of a log, and of the table
+SAID = 8  # answers that the summary names
+# Where a spreadsheet takes a text for a formula: at its beginning, and after what may begin a cell.
+FORMULA = re.compile(r"(^|(?<=[\t\r\n;,|]))(?=\s*[=+\-@＝＋－＠])|^(?=[\t\r\n])")
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 FIRST = ["student", "file", "kind", "key", "answer", "result", "right", "tries", "late", "at"]
 
 
@@ -42,14 +51,19 @@ def collect(folder: Path) -> Collected:
     rows: list[dict[str, Any]] = []
     logs: list[pd.DataFrame] = []
     skipped: dict[str, str] = {}
-    for path in _files(folder):
+    for path, hindrance in _files(folder):
         name = path.relative_to(folder)
-        who = {"student": name.parts[0] if len(name.parts) > 1 else name.stem, "file": str(name)}
+        student = name.parts[0] if len(name.parts) > 1 else name.stem
+        who = {"student": whole_characters(student), "file": whole_characters(str(name))}
         try:
-            content = _content(path)
+            if hindrance:
+                raise ValueError(hindrance)
+            content = valid(read_json(path, MOST))
+            if not content.keys() & set(KINDS):
+                raise ValueError("it holds no answers of this course")
             found = [row | who for row in _rows(content)]
-        except ValueError as error:
-            skipped[str(name)] = str(error)
+        except (OSError, ValueError) as error:
+            skipped[str(name)] = f"skipped: {bounded(str(error))}"
             continue
         rows += found
         try:
@@ -59,7 +73,7 @@ def collect(folder: Path) -> Collected:
         else:
             if log is not None:
                 logs.append(pd.concat([pd.DataFrame(who, index=log.index), log], axis=1))
-    table = pd.DataFrame(rows, columns=[*FIRST, *_others(rows)])
+    table = pd.DataFrame(rows, columns=[*FIRST, *_others(rows)], dtype=object)
     together = pd.concat(logs, ignore_index=True) if logs else pd.DataFrame()
     return Collected(table, together, skipped)
 
@@ -69,9 +83,8 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
 
     Of a student who handed in several files the newest answer counts.
     """
-    newest = table.sort_values("at", kind="stable").drop_duplicates(
-        ["student", "kind", "key"], keep="last"
-    )
+    in_time = table.sort_values("at", kind="stable", na_position="first")
+    newest = in_time.drop_duplicates(["student", "kind", "key"], keep="last")
     rows = {}
     for (key, kind), group in newest.groupby(["key", "kind"]):
         judged = group["right"].dropna().astype(float)
@@ -83,36 +96,62 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def main(argv: list[str]) -> int:
-    """`python -m ikteach collect FOLDER`; the exit code."""
+    """`python -m ikteach collect FOLDER`; the exit code, which is 3 if a file was left out."""
     parser = argparse.ArgumentParser(
         prog="python -m ikteach collect",
         description="One table of all predictions, checks and quiz answers in FOLDER: files that "
         "`export` wrote, or predictions.json.",
+        epilog="Exit code: 0 if all was read, 3 if files were left out, which are named, 1 if "
+        "there was nothing to read or a table could not be written.",
         allow_abbrev=False,
     )
     parser.add_argument("folder", metavar="FOLDER", type=Path)
     parser.add_argument("--table", metavar="CSV", type=Path, help="write the table there")
     parser.add_argument("--logs", metavar="CSV", type=Path, help="write the exported logs there")
     options = parser.parse_args(argv)
-    outputs = {path: name for name in ("table", "logs") if (path := getattr(options, name))}
-    for path in outputs:
-        if path.exists():
+    outputs = {name: path for name in ("table", "logs") if (path := getattr(options, name))}
+    for path in outputs.values():
+        if os.path.lexists(path):
             return _refuse(f"{path} exists already and was left alone; name another file.")
+    if len(set(map(os.path.realpath, outputs.values()))) < len(outputs):
+        return _refuse("The table and the logs need two files.")
     try:
         found = collect(options.folder.expanduser())
     except NotADirectoryError as error:
         return _refuse(f"{error}.")
     for name, why in found.skipped.items():
-        print(f"{name}: {why}", file=sys.stderr)
+        print(_shown(f"{name}: {why}"), file=sys.stderr)
     if found.table.empty:
         return _refuse(f"There are no answers in {options.folder}.")
     count = found.table[["student", "file"]].nunique()
     print(f"{len(found.table)} answers of {count['student']} students in {count['file']} files")
-    print(summary(found.table).to_string())
-    for path, name in outputs.items():
-        getattr(found, name).to_csv(path, index=False)
+    print(_shown(summary(found.table).to_string()))
+    for name, path in outputs.items():
+        try:
+            write_whole(path, harmless(getattr(found, name)).to_csv(index=False))
+        except OSError as error:
+            return _refuse(f"{error}.")
         print(f"written: {path}")
-    return 0
+    return SKIPPED if found.skipped else 0
+
+
+def harmless(table: pd.DataFrame) -> pd.DataFrame:
+    """A table in which no text is a formula to a spreadsheet: an apostrophe stands before it.
+
+    Numbers stay as they are, and so do texts that are one, such as "-0.5".
+    """
+    return table.rename(columns=_text).map(_text)
+
+
+def _text(cell: Any) -> Any:
+    if not isinstance(cell, str) or NUMBER.fullmatch(cell):
+        return cell
+    return FORMULA.sub("'", cell)
+
+
+def _shown(text: str) -> str:
+    """Text as a terminal may show it: without what would steer it."""
+    return "".join(one if one.isprintable() or one == "\n" else "�" for one in text)
 
 
 def _refuse(sentence: str) -> int:
@@ -120,34 +159,29 @@ def _refuse(sentence: str) -> int:
     return 1
 
 
-def _files(folder: Path) -> Iterator[Path]:
-    for path in sorted(folder.rglob("*")):
-        hidden = any(part.startswith(".") for part in path.relative_to(folder).parts)
-        if path.suffix.lower() in (".json", ".zip") and path.is_file() and not hidden:
-            yield path
-
-
-def _content(path: Path) -> dict[str, Any]:
-    if path.suffix.lower() == ".zip":
-        raise ValueError("skipped: unpack it first")
-    try:
-        content = json.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise ValueError(f"skipped: it cannot be read ({error.strerror})") from None
-    except (ValueError, RecursionError):
-        raise ValueError("skipped: it is damaged, or no JSON") from None
-    if not isinstance(content, dict) or not content.keys() & set(KINDS):
-        raise ValueError("skipped: it holds no answers of this course")
-    return content
+def _files(folder: Path) -> Iterator[tuple[Path, str]]:
+    """The files that may hold answers, and a word on those that cannot."""
+    unreadable: list[OSError] = []
+    for place, folders, names in os.walk(folder, onerror=unreadable.append):
+        folders[:] = sorted(name for name in folders if not name.startswith("."))
+        for name in sorted(names):
+            path = Path(place, name)
+            if name.startswith(".") or path.suffix.lower() not in (".json", ".zip"):
+                continue
+            link = "it is a link, and leads elsewhere" if path.is_symlink() else ""
+            packed = "unpack it first" if path.suffix.lower() == ".zip" else ""
+            yield path, link or packed
+        for name in folders:
+            if os.path.islink(os.path.join(place, name)):
+                yield Path(place, name), "it is a link, and leads elsewhere"
+    for error in unreadable:
+        yield Path(error.filename), f"it cannot be read ({error.strerror})"
 
 
 def _rows(content: dict[str, Any]) -> Iterator[dict[str, Any]]:
     for kind in KINDS:
-        group = content.get(kind, {})
-        if not (isinstance(group, dict) and all(isinstance(one, dict) for one in group.values())):
-            raise ValueError(f"skipped: its {kind} have a form that is not ours")
-        for key, entry in group.items():
-            fields = {name: _cell(value) for name, value in entry.items()}
+        for key, entry in content.get(kind, {}).items():
+            fields = {bounded(name, 60): _cell(value) for name, value in entry.items()}
             yield fields | {"kind": NAMES[kind], "key": key, "right": _right(kind, entry)}
 
 
@@ -162,23 +196,32 @@ def _right(kind: str, entry: dict[str, Any]) -> bool | None:
 
 def _cell(value: Any) -> Any:
     """A value as it stands in a cell of the table."""
-    if isinstance(value, list):
+    if isinstance(value, list | str):
         return words(value)
-    return str(value) if isinstance(value, dict) else value
+    return bounded(str(value)) if isinstance(value, dict) else value
 
 
 def _others(rows: list[dict[str, Any]]) -> list[str]:
     """What was recorded beside the usual, in the order in which it turns up."""
-    return [name for name in dict.fromkeys(n for row in rows for n in row) if name not in FIRST]
+    names = dict.fromkeys(name for row in rows for name in row)
+    return [name for name in names if name not in FIRST][:COLUMNS]
 
 
 def _log(log: Any) -> pd.DataFrame | None:
+    """An exported log as a table; ValueError if it has another form."""
     if log is None:
         return None
-    try:
-        return pd.DataFrame(log["data"], columns=log["columns"])
-    except (KeyError, TypeError, ValueError):
-        raise ValueError("it has a form that is not ours") from None
+    match log:
+        case {"columns": [*columns], "data": [*data]} if len(columns) <= COLUMNS:
+            names = [str(name) for name in columns]
+            of_its_own = set(names) - {"student", "file"}
+            if len(of_its_own) == len(names) and all(map(partial(_fills, len(names)), data)):
+                return pd.DataFrame([list(map(_cell, row)) for row in data], columns=names)
+    raise ValueError("it has a form that is not ours")
+
+
+def _fills(width: int, row: Any) -> bool:
+    return isinstance(row, list) and len(row) == width
 
 
 def _said(answers: pd.Series) -> str:
@@ -187,7 +230,8 @@ def _said(answers: pd.Series) -> str:
     if known.empty:
         return ""
     if all(isinstance(one, int | float) and not isinstance(one, bool) for one in known):
-        return f"median {known.median():.4g}"
-    counts = known.astype(str).value_counts().sort_index()
+        return f"median {known.astype(float).median():.4g}"
+    counts = known.map(lambda answer: bounded(str(answer), 60)).value_counts().sort_index()
     counts = counts.sort_values(ascending=False, kind="stable")  # ties in the alphabet's order
-    return ", ".join(f"{answer} {count}" for answer, count in counts.items())
+    more = [f"and {len(counts) - SAID} other answers"] if len(counts) > SAID else []
+    return ", ".join([f"{answer} {count}" for answer, count in counts[:SAID].items()] + more)

@@ -3,16 +3,32 @@
 import signal
 import sys
 import threading
-import time
+from collections.abc import Callable
 from contextlib import AbstractContextManager
-from types import FrameType
-from typing import Any
+from time import monotonic  # by name, so that nobody can put another in its place
+from types import CodeType, FrameType
+from typing import Any, TypeVar
 
 AGAIN = 0.1  # [s] until a timer that was swallowed by a bare `except:` comes again
+AT_ONCE = 1e-4  # [s] the same, when it has been swallowed some times
+PATIENCE = 3  # times
+
+OLD = sys.version_info < (3, 12)  # `while True: pass` in one line is then a line but once
+SOUND = ("ikteach.", "numpy.")  # modules without such a line
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+_shielded: set[CodeType] = set()
 
 
 class TooLongError(BaseException):
     """The time is over. Not an Exception, so that `except Exception:` does not swallow it."""
+
+
+def shielded(function: F) -> F:
+    """Let a function of ours come to its end, whatever the time is."""
+    _shielded.add(function.__code__)
+    return function
 
 
 def deadline(seconds: float) -> AbstractContextManager[None]:
@@ -20,7 +36,8 @@ def deadline(seconds: float) -> AbstractContextManager[None]:
 
     A timer's signal does it where there is one: in the main thread of a kernel on Linux or macOS.
     Elsewhere (Windows, another thread, Pyodide) each line of Python looks at the clock; what runs
-    inside numpy is then not stopped before it returns, and a bare `except:` in a loop wins.
+    inside numpy is then not stopped before it returns, and a bare `except:` in a loop wins. Code
+    that ends the process (`os._exit`) or takes the timer away is stopped by nobody.
     """
     return Timer(seconds) if _has_timer() else Tracer(seconds)
 
@@ -30,11 +47,22 @@ def _has_timer() -> bool:
     return main and hasattr(signal, "setitimer") and sys.platform != "emscripten"
 
 
+def _may_stop(frame: FrameType | None) -> bool:
+    """Whether the code of this frame, and of all that called it, may be left where it is."""
+    if frame is not None and frame.f_code.co_filename == __file__:
+        return False
+    while frame is not None:
+        if frame.f_code in _shielded:
+            return False
+        frame = frame.f_back
+    return True
+
+
 class Timer:
     """A deadline by signal."""
 
     def __init__(self, seconds: float) -> None:
-        self._seconds = seconds
+        self._seconds, self._rung = seconds, 0
 
     def __enter__(self) -> None:
         self._before = signal.signal(signal.SIGALRM, self._ring)
@@ -45,15 +73,19 @@ class Timer:
         signal.signal(signal.SIGALRM, self._before)
 
     def _ring(self, number: int, frame: FrameType | None) -> None:
-        if frame is None or frame.f_code.co_filename != __file__:  # not while it is taken down
-            raise TooLongError
+        if not _may_stop(frame):
+            return
+        self._rung += 1
+        if self._rung == PATIENCE:  # so often that one comes between an `except:` and the next try
+            signal.setitimer(signal.ITIMER_REAL, AT_ONCE, AT_ONCE)
+        raise TooLongError
 
 
 class Tracer:
     """A deadline by looking at the clock at every line."""
 
     def __init__(self, seconds: float) -> None:
-        self._end = time.monotonic() + seconds
+        self._end = monotonic() + seconds
 
     def __enter__(self) -> None:
         self._before = sys.gettrace()
@@ -63,6 +95,8 @@ class Tracer:
         sys.settrace(self._before)
 
     def _look(self, frame: FrameType, event: str, arg: Any) -> Any:
-        if time.monotonic() > self._end and frame.f_code.co_filename != __file__:
+        if OLD and not str(frame.f_globals.get("__name__")).startswith(SOUND):
+            frame.f_trace_opcodes = True
+        if monotonic() > self._end and _may_stop(frame):
             raise TooLongError
         return self._look

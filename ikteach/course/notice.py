@@ -12,10 +12,13 @@ LOOK = {"good": ("✓", "#009e73"), "bad": ("✗", "#d55e00"), "plain": ("→", 
 
 @dataclass(frozen=True)
 class Notice:
-    """One sentence, and what it is about."""
+    """One sentence, and what it is about; false if that is bad."""
 
     sentence: str
     mood: Mood = "plain"
+
+    def __bool__(self) -> bool:
+        return self.mood != "bad"
 
     def __str__(self) -> str:
         return f"{LOOK[self.mood][0]} {self.sentence}"

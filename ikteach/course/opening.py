@@ -7,11 +7,13 @@ therefore keeps a manifest, which holds the SHA-256 of each file as it was last 
 import errno
 import hashlib
 import json
-import os
 from pathlib import Path, PurePosixPath
 from typing import Literal, NamedTuple
 
+from ikteach.files import read_json, write_whole
+
 MANIFEST = ".ikteach.json"
+MOST = 100 * 2**20  # bytes of a notebook, outputs and all
 
 Outcome = Literal["copied", "restored", "updated", "current", "kept"]
 Manifest = dict[str, str]
@@ -58,9 +60,9 @@ def chapters(notebooks: Path) -> dict[str, str]:
 def title(notebook: Path) -> str:
     """The first `# ` heading of the notebook's first markdown cell; empty where there is none."""
     try:
-        cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
+        cells = read_json(notebook, MOST)["cells"]
         prose = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "markdown"]
-    except (ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError):
         return "(not a readable notebook)"
     lines = prose[0].splitlines() if prose else []
     return next((line[2:].strip() for line in lines if line.startswith("# ")), "")
@@ -89,9 +91,9 @@ def deliver(notebooks: Path, folder: Path) -> list[Delivery]:
     deliveries: list[Delivery] = []
     for name in names:
         deliveries += _deliver_file(folder, name, (notebooks / name).read_bytes(), manifest)
-    if manifest != before:
-        text = json.dumps(manifest, indent=1, sort_keys=True)
-        _write(folder / MANIFEST, text.encode())
+        if manifest != before:  # at each file: what comes may be the end of us
+            _write(folder / MANIFEST, json.dumps(manifest, indent=1, sort_keys=True).encode())
+            before = dict(manifest)
     return deliveries
 
 
@@ -138,7 +140,7 @@ def _put(folder: Path, name: str, data: bytes, manifest: Manifest) -> Outcome:
 def read_manifest(folder: Path) -> Manifest:
     """File name -> SHA-256 as last delivered; empty where it is missing or damaged."""
     try:
-        manifest = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+        manifest = read_json(folder / MANIFEST, MOST)
         return {name: digest for name, digest in manifest.items() if isinstance(digest, str)}
     except (FileNotFoundError, ValueError, AttributeError):
         return {}  # then every file that differs counts as the student's, and is kept
@@ -149,14 +151,5 @@ def _digest(data: bytes) -> str:
 
 
 def _write(path: Path, data: bytes) -> None:
-    """Replace the file in one step: after a crash there is the old one or the new, never half."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    draft = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        draft.write_bytes(data)
-        os.replace(draft, path)
-    except OSError as error:
-        error.filename = str(path)  # the name by which the student knows the file
-        raise
-    finally:
-        draft.unlink(missing_ok=True)
+    write_whole(path, data, overwrite=True)

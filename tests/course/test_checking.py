@@ -252,3 +252,273 @@ def test_the_course_is_imported_without_screens() -> None:
     code = f"import sys, ikteach.course as c; print([m for m in {heavy} if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+# ---- a verdict counts only if it passed
+
+
+def test_a_verdict_is_true_only_if_passed() -> None:
+    assert check("xx.double", lambda x: 2 * x)
+    for wrong in (lambda x: x, stub, None, endless):
+        assert not check("xx.double", wrong)
+    assert check("xx.double", lambda x: 2 * x, strict=True).passed
+    with pytest.raises(AssertionError, match="must be twice its argument") as raised:
+        check("xx.double", lambda x: x, strict=True)
+    assert "Hint:" in str(raised.value)
+    with pytest.raises(AssertionError, match="Not yet"):
+        check("xx.double", stub, strict=True)
+
+
+def test_a_strict_check_is_recorded_too(folder: Path) -> None:
+    with pytest.raises(AssertionError):
+        check("xx.double", lambda x: x, strict=True)
+    entry = json.loads((folder / "predictions.json").read_text())["verdicts"]["xx.double"]
+    assert (entry["passed"], entry["tries"]) == (False, 1)
+
+
+# ---- odd answers, odd results, odd errors
+
+
+class Odd:
+    """A callable of many oddities."""
+
+    def __init__(self, name: Any, gives: Any = 1) -> None:
+        self.name, self.gives = name, gives
+
+    @property
+    def __name__(self) -> Any:
+        if isinstance(self.name, Exception):
+            raise self.name
+        return self.name
+
+    def __call__(self, *_: Any) -> Any:
+        return self.gives
+
+
+class Silent(Exception):
+    def __str__(self) -> str:
+        raise RuntimeError
+
+
+class Base(BaseException):
+    pass
+
+
+class NoArray:
+    def __array__(self, *_: Any, **__: Any) -> Any:
+        raise KeyError("no")
+
+    def __repr__(self) -> str:
+        raise RuntimeError
+
+
+class Meta(type):
+    @property
+    def __name__(cls) -> Any:  # type: ignore[override]
+        return 5
+
+
+@pytest.mark.parametrize("name", [5, None, "", "two words", "x" * 10**6, "\ud800", "a\nb", b"x",
+                                  RuntimeError("no")])  # fmt: skip
+def test_whatever_an_answer_calls_itself(name: Any) -> None:
+    assert said("xx.double", Odd(name)).startswith("`double([0., 1.])` returned")
+
+
+def raising(error: BaseException) -> Any:
+    def raises(x: Any) -> Any:
+        raise error
+
+    return raises
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (ValueError("x" * 10**7), "raised ValueError: xxx"),
+        (ValueError("two\nlines"), "raised ValueError: two, in the line"),
+        (ValueError("\ud800"), "raised ValueError: ?"),
+        (ValueError(), "raised ValueError: without a word"),
+        (Silent(), "raised Silent: without a word"),
+        (MemoryError(), "raised MemoryError"),
+        (RecursionError("deep"), "raised RecursionError: deep"),
+        (KeyboardInterrupt(), "raised KeyboardInterrupt"),
+        (GeneratorExit(), "raised GeneratorExit"),
+        (StopIteration(3), "raised StopIteration: 3"),
+        (Base("own"), "raised Base: own"),
+        (ExceptionGroup("both", [ValueError("a")]), "raised ExceptionGroup: both"),
+        (SystemExit(3), "exit()"),
+        (type("", (Exception,), {})("x"), "raised nameless type: x"),
+    ],
+    ids=lambda value: type(value).__name__ if isinstance(value, BaseException) else "",
+)
+def test_whatever_is_raised_is_one_short_sentence(
+    folder: Path, error: BaseException, words: str
+) -> None:
+    sentence = said("xx.double", raising(error))
+    assert words in sentence
+    assert len(sentence) <= checking.LONGEST
+    if not isinstance(error, Exception):  # nor is one taken for an error that was asked for
+        assert words in said("xx.refuse", raising(error))
+    assert (folder / "predictions.json").stat().st_size < 5000
+
+
+def test_an_interrupt_by_the_student_goes_through() -> None:
+    import _thread
+
+    def interrupted(x: Any) -> Any:
+        _thread.interrupt_main()
+        for _ in range(10**6):
+            pass
+        return 2 * x
+
+    with pytest.raises(KeyboardInterrupt):
+        check("xx.double", interrupted)
+
+
+@pytest.mark.parametrize(
+    ("result", "words"),
+    [
+        (NoArray(), "returned a NoArray, where an array of shape (2,) is wanted"),
+        (Meta("Strange", (), {})(), "returned a Strange, where"),
+        (type("", (), {})(), "returned a nameless type, where"),
+        (np.broadcast_to(0.0, (10**6, 10**6)), "an array of shape (1000000, 1000000)"),
+        ("x" * 10**7, "returned a str"),
+        (Odd(3), "returned an Odd"),
+        ((x for x in ()), "returned a generator"),
+    ],
+    ids=["no-array", "meta", "nameless", "giant", "long", "callable", "generator"],
+)  # fmt: skip
+def test_whatever_is_returned(result: Any, words: str) -> None:
+    assert words in said("xx.double", lambda x: result)
+    assert "check itself failed" not in said("xx.number", result)
+
+
+def test_a_giant_array_is_an_answer_like_another() -> None:
+    sentence = said("xx.double", lambda x: np.zeros((10**8, 10**8)))
+    assert "raised" in sentence
+    assert "MemoryError" in sentence
+
+
+def test_an_argument_made_into_something_else() -> None:
+    def spoils(x: Any) -> Any:
+        x.append([1, 2])
+        return 0
+
+    with pytest.raises(WrongError, match="changed its argument 1"):
+        Answer(spoils, "spoils", ())([1, 2])
+
+
+@pytest.mark.parametrize("way", [deadline, Tracer], ids=["timer", "tracer"])
+def test_a_loop_in_one_line_is_stopped(way: Any) -> None:
+    # The body stands in the line of the loop: with Python 3.11 that is a line only once.
+    code = "def one():\n    while True: pass\ndef two():\n    while 1: 1\n"
+    names: dict[str, Any] = {}
+    exec(compile(code, "<cell>", "exec"), names)
+    before = sys.gettrace()
+    for name in ("one", "two"):
+        with pytest.raises(TooLongError), way(0.1):
+            names[name]()
+        assert sys.gettrace() is before
+
+
+def test_a_bare_except_that_never_ends_is_stopped() -> None:
+    def deaf(x: Any) -> Any:
+        while True:
+            try:
+                while True:
+                    pass
+            except:  # noqa: E722
+                pass
+
+    assert "was stopped after 0.3 seconds" in said("xx.double", deaf)
+
+
+# ---- the session is as it was
+
+
+def meddle(x: Any) -> Any:
+    """Change what others use, in every way."""
+    import math
+    import os
+    import random
+    import warnings
+
+    os.makedirs("elsewhere", exist_ok=True)
+    os.chdir("elsewhere")
+    os.environ["IKTEACH_TEST"] = "1"
+    sys.path.insert(0, "elsewhere")
+    sys.stdout = sys.stderr = None  # type: ignore[assignment]
+    np.random.seed(1)  # noqa: NPY002
+    random.seed(1)
+    np.seterr(all="raise")
+    np.set_printoptions(precision=1)
+    warnings.simplefilter("error")
+    sys.setrecursionlimit(5000)
+    time.monotonic = lambda: 0.0
+    math.sqrt = lambda _: 0.0  # type: ignore[assignment]
+    np.linalg.svd = np.allclose = np.array_equal = np.all = lambda *a, **k: True  # type: ignore
+    __builtins__["len" if isinstance(__builtins__, dict) else "__name__"] = lambda _: 0
+    return x + 1
+
+
+def state() -> Any:
+    import os
+    import random
+    import warnings
+
+    chance = np.random.get_state()  # noqa: NPY002
+    return {
+        "folder": os.getcwd(), "environment": dict(os.environ), "path": list(sys.path),
+        "streams": (sys.stdin, sys.stdout, sys.stderr), "random": random.getstate(),
+        "numpy's": (chance[1].tolist(), chance[2]), "errors": np.geterr(),
+        "printing": np.get_printoptions(), "warnings": list(warnings.filters),
+        "limit": sys.getrecursionlimit(), "trace": sys.gettrace(),
+        "names": [np.linalg.svd, np.allclose, np.all, time.monotonic, len],
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("thread", [False, True])
+def test_a_check_leaves_the_session_as_it_was(folder: Path, thread: bool) -> None:
+    before, verdicts = state(), []
+
+    def work() -> None:
+        verdicts.append(check("xx.double", meddle))
+
+    if thread:
+        worker = threading.Thread(target=work)
+        worker.start()
+        worker.join()
+    else:
+        work()
+    after = state()
+    for what in before:
+        assert after[what] == before[what], what
+    # What the answer has put in the place of numpy's functions does not judge it.
+    assert verdicts[0].sentence == "`meddle([0., 1.])` must be twice its argument."
+    assert json.loads((folder / "predictions.json").read_text())["verdicts"]["xx.double"]
+    assert not (folder / "elsewhere" / "predictions.json").exists()
+
+
+def test_answers_stay_in_the_folder_of_the_notebook(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    check("xx.double", stub)
+    (folder / "data").mkdir()
+    monkeypatch.chdir(folder / "data")
+    check("xx.double", lambda x: 2 * x)
+    assert json.loads((folder / "predictions.json").read_text())["verdicts"]["xx.double"]["passed"]
+    assert list((folder / "data").iterdir()) == []
+
+
+def test_megabytes_that_an_answer_prints_are_left_out(capsys: pytest.CaptureFixture[str]) -> None:
+    def prints(x: Any) -> Any:
+        print("y" * 10**6)
+        print("z" * 10**6, file=sys.stderr)
+        return 2 * x
+
+    assert check("xx.double", prints)
+    out, err = capsys.readouterr()
+    assert out.startswith("y" * 100)
+    for text in (out, err):
+        assert 10_000 <= len(text) < 10_100
+        assert text.endswith("left out)\n")

@@ -1,0 +1,97 @@
+"""Run a student's code, and leave the session as it was before."""
+
+import builtins
+import io
+import math
+import os
+import random
+import sys
+import time
+import warnings
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from typing import Any
+
+import numpy as np
+
+from ikteach.course.deadline import shielded
+
+# What is put back if an answer has put something else in its place.
+MODULES = (builtins, math, random, time, np, np.linalg, np.random)
+PRINTED = 10_000  # letters that a check may print
+
+
+@contextmanager
+def untouched() -> Iterator[None]:
+    """Put back, when the block ends, what of the session its code has changed.
+
+    That is the working directory, the environment, the import path, the streams, the states of
+    random numbers, numpy's way of printing and the recursion limit. What is printed in the block is
+    passed on, up to `PRINTED` letters.
+    """
+    streams, path = (sys.stdin, sys.stdout, sys.stderr), list(sys.path)
+    environment, limit = dict(os.environ), sys.getrecursionlimit()
+    chance, numpys = random.getstate(), np.random.get_state()  # noqa: NPY002  of any age
+    folder = None
+    with suppress(OSError):  # of one that is gone
+        folder = os.getcwd()
+    sys.stdout, sys.stderr = Quiet(sys.stdout), Quiet(sys.stderr)
+    try:
+        with np.printoptions():
+            yield
+    finally:
+        sys.setrecursionlimit(limit)
+        sys.stdin, sys.stdout, sys.stderr = streams
+        sys.path[:] = path
+        if dict(os.environ) != environment:
+            os.environ.clear()
+            os.environ.update(environment)
+        if folder is not None:
+            with suppress(OSError):
+                os.chdir(folder)
+        random.setstate(chance)
+        np.random.set_state(numpys)  # noqa: NPY002
+
+
+class Unpatched:
+    """`with Unpatched():` puts back names of `MODULES`, numpy's way with errors, and warnings.
+
+    So that whoever judges what the block has made finds `numpy` as it was.
+    """
+
+    @shielded
+    def __enter__(self) -> None:
+        self._inside = ExitStack()
+        self._inside.enter_context(np.errstate(all="ignore"))
+        self._inside.enter_context(warnings.catch_warnings())
+        warnings.simplefilter("ignore")
+        self._names = [(vars(module), dict(vars(module))) for module in MODULES]
+
+    @shielded
+    def __exit__(self, *_: object) -> None:
+        for now, before in self._names:
+            for name, value in before.items():
+                if now.get(name) is not value:
+                    now[name] = value
+        self._inside.close()
+
+
+class Quiet(io.TextIOBase):
+    """Passes text on until it becomes too much."""
+
+    def __init__(self, to: Any) -> None:
+        self._to, self._left = to, PRINTED
+
+    def write(self, text: str) -> int:
+        """Pass on what may be printed yet; the rest is left out."""
+        if self._left > 0 and self._to is not None:
+            self._to.write(text[: self._left])
+            self._left -= len(text)
+            if self._left <= 0:
+                self._to.write(" … (what else it prints is left out)\n")
+        return len(text)
+
+    def flush(self) -> None:
+        """Pass that on too."""
+        if self._to is not None:
+            self._to.flush()
