@@ -2,7 +2,9 @@
 
 import json
 import os
-from dataclasses import fields
+import subprocess
+import sys
+from dataclasses import fields, replace
 from functools import partial
 
 import numpy as np
@@ -181,3 +183,150 @@ def test_files_that_are_not_there_or_not_text(session, tmp_path):
     settings.write_bytes(b"\xff\xfe\x00")
     with pytest.raises(ValueError, match="it is not JSON"):
         load(settings)
+
+
+# ---- one moment at which the new run is there, and until then the old one
+
+
+def runs(tmp_path):
+    """A run of 3 ticks that is saved, and one of 5 to put in its place."""
+    old, new = Session(), Session()
+    for session, ticks in ((old, 3), (new, 5)):
+        for _ in range(ticks):
+            session.tick()
+    save(tmp_path / "walk", old)
+    return new
+
+
+class Stop(BaseException):
+    """The end of a process, as far as one can be had without one."""
+
+
+@pytest.mark.parametrize("error", [OSError(28, "No space left on device"), Stop()], ids=str)
+@pytest.mark.parametrize("call", range(1, 8))
+@pytest.mark.parametrize("step", ["open", "fsync", "replace", "link", "rename"])
+def test_a_save_that_ends_anywhere_leaves_the_old_run_or_the_new(
+    tmp_path, monkeypatch, step, call, error
+):
+    new, calls, real = runs(tmp_path), [], getattr(os, step)
+
+    def ends(*arguments, **options):
+        calls.append(step)
+        if len(calls) == call:
+            raise error
+        return real(*arguments, **options)
+
+    raised = None
+    with monkeypatch.context() as patch:
+        patch.setattr(os, step, ends)
+        try:
+            save(tmp_path / "walk", new, overwrite=True)
+        except (OSError, Stop) as left:
+            raised = left
+    if isinstance(raised, OSError):
+        assert "cannot be written (No space left on device)" in str(raised)
+    run = load(tmp_path / "walk")
+    if not isinstance(error, Stop):
+        assert len(run) == (3 if raised else 5)
+    assert len(run) in (3, 5)
+    assert load(tmp_path / "walk.json").theta.shape == run.theta.shape
+    if not raised or isinstance(error, OSError):
+        assert not [name for name in os.listdir(tmp_path) if name.endswith(".part")]
+    save(tmp_path / "walk", new, overwrite=True)
+    assert len(load(tmp_path / "walk")) == 5
+    assert sorted(name for name in os.listdir(tmp_path) if "-" not in name) == [
+        "walk.csv",
+        "walk.json",
+    ]
+
+
+KILL = """
+import os, sys
+from pathlib import Path
+from ikteach.formats.session import save
+from ikteach.motion.session import Session
+session, left = Session(), [int(sys.argv[2])]
+for _ in range(5):
+    session.tick()
+for step in ("open", "fsync", "replace", "link", "unlink"):
+    def counted(*a, real=getattr(os, step), **k):
+        left[0] -= 1
+        if not left[0]:
+            os._exit(9)
+        return real(*a, **k)
+    setattr(os, step, counted)
+save(Path(sys.argv[1], "walk"), session, overwrite=True)
+"""
+
+
+def test_a_save_that_is_killed_anywhere_leaves_the_old_run_or_the_new(tmp_path):
+    seen = set()
+    for call in range(1, 40):
+        folder = tmp_path / str(call)
+        folder.mkdir()
+        runs(folder)
+        code = subprocess.run([sys.executable, "-B", "-c", KILL, str(folder), str(call)]).returncode
+        seen.add((code, len(load(folder / "walk"))))
+        if code == 0:
+            break
+    assert seen == {(9, 3), (9, 5), (0, 5)}  # it was killed before, after, and not at all
+
+
+def test_a_table_that_another_program_has_open_costs_nothing(tmp_path, monkeypatch):
+    new, replace = runs(tmp_path), os.replace
+    newer = Session()
+    newer.tick()
+
+    def locked(draft, path):
+        if str(path).endswith("walk.csv"):
+            raise PermissionError(13, "the file is open in another program")
+        replace(draft, path)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "replace", locked)
+        settings, table = save(tmp_path / "walk", new, overwrite=True)
+        assert table.name.startswith("walk-")
+        assert table.exists()
+        assert len(load(settings)) == 5
+        _, other = save(tmp_path / "walk", newer, overwrite=True)
+        assert not table.exists()
+        assert len(load(settings)) == 1
+    save(tmp_path / "walk", new, overwrite=True)
+    assert len(load(settings)) == 5
+    assert not other.exists()
+    assert sorted(os.listdir(tmp_path)) == ["walk.csv", "walk.json"]
+
+
+def test_another_session_of_a_like_name_is_left_alone(session, tmp_path):
+    save(tmp_path / "walk-0123abcd", session)
+    runs(tmp_path)
+    save(tmp_path / "walk", session, overwrite=True)
+    assert len(load(tmp_path / "walk-0123abcd")) == len(session.log())
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"dt": 0.0}, "a dt that is not positive"),
+        ({"theta": np.nan}, "numbers that are not finite"),
+        ({"methods": ("x" * 999, "mix")}, "no name of a method"),
+        ({"methods": ("dls", "dls")}, "two methods called 'dls'"),
+    ],
+)
+def test_what_could_not_be_read_back_is_not_saved(session, tmp_path, change, words):
+    log = session.log()
+    if "theta" in change:
+        change = {"theta": np.full_like(log.theta, np.nan)}
+    with pytest.raises(ValueError, match=words):
+        save(tmp_path / "run", replace(log, **change))
+    assert os.listdir(tmp_path) == []
+
+
+def test_settings_that_json_does_not_know_are_told_in_words(session, tmp_path):
+    odd = {"cap": np.inf, "none": np.nan, "half": "\ud800", "what": object, "n": np.int64(3)}
+    save(tmp_path / "run", replace(session.log(), settings=odd))
+    strict = (tmp_path / "run.json").read_text(encoding="utf-8")
+    json.loads(strict, parse_constant=lambda word: pytest.fail(word))
+    settings = load(tmp_path / "run").settings
+    assert settings["cap"] == "inf"
+    assert settings["n"] == 3
