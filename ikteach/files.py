@@ -49,7 +49,7 @@ SIGNS = {
 }
 
 _short = reprlib.Repr()
-_short.maxstring = _short.maxother = 60
+_short.maxstring = _short.maxother = 150
 _short.maxlong = 40
 
 

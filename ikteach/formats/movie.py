@@ -192,7 +192,7 @@ def _whole(path: str | os.PathLike[str]) -> Iterator[None]:
     av = library()
     try:
         yield
-    except (av.error.FFmpegError, TypeError, ZeroDivisionError):  # frames without times
+    except (av.error.FFmpegError, ArithmeticError, TypeError, ValueError):  # no times, no text
         raise ValueError(f"{quoted(str(path))} is not a movie that can be read") from None
 
 

@@ -1,6 +1,7 @@
 """Movies: what is asked is what is read back, and nothing broken is ever left behind."""
 
 import os
+import subprocess
 import sys
 
 import numpy as np
@@ -193,3 +194,54 @@ def test_the_file_can_be_read_by_others(tmp_path):
     (tmp_path / "plain").touch()
     path = movie.write(tmp_path / "a.gif", frames(2))
     assert path.stat().st_mode == (tmp_path / "plain").stat().st_mode
+
+
+@pytest.mark.parametrize("ending", ENDINGS)
+def test_a_damaged_movie_is_read_or_named(tmp_path, ending):
+    whole = movie.write(tmp_path / f"a{ending}", frames(6)).read_bytes()
+    rng, path = np.random.default_rng(0), tmp_path / f"b{ending}"
+    said = set()
+    for _ in range(60):
+        data = bytearray(whole[: rng.integers(1, len(whole) + 1)])
+        for place in rng.integers(0, len(data), size=rng.integers(0, 20)):
+            data[place] = rng.integers(256)
+        path.write_bytes(data)
+        try:
+            facts, seen = movie.facts(path), list(movie.read(path))
+        except ValueError as error:
+            said.add(str(error).rpartition("' ")[2])
+        else:
+            assert facts.frames == len(seen)
+    assert said  # else none was damaged
+    assert said <= {"is not a movie that can be read", "has no pictures in it"}
+
+
+def test_a_movie_on_a_full_disk_is_a_sentence_and_no_file(tmp_path, monkeypatch):
+    def full(_):
+        raise OSError(28, "No space left on device")
+
+    (tmp_path / "walk.gif").write_bytes(b"mine")
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(OSError, match=r"^walk.gif cannot be written \(No space left on device\)"):
+        movie.write(tmp_path / "walk.gif", frames(3), overwrite=True)
+    assert (tmp_path / "walk.gif").read_bytes() == b"mine"
+    assert os.listdir(tmp_path) == ["walk.gif"]
+
+
+def test_the_draft_of_a_movie_that_was_killed_is_known_and_goes(tmp_path):
+    code = """
+import os, sys
+import numpy as np
+from ikteach.formats import movie
+with movie.writing(sys.argv[1], size=(64, 48), rate=30) as add:
+    add(np.zeros((48, 64, 3), dtype=np.uint8))
+    os._exit(9)
+"""
+    path = tmp_path / "walk.avi"
+    assert subprocess.run([sys.executable, "-B", "-c", code, str(path)]).returncode == 9
+    (left,) = tmp_path.iterdir()
+    assert left.name.startswith(".walk.avi.")
+    assert left.suffix == ".part"
+    os.utime(left, (0, 0))
+    movie.write(path, frames(3))
+    assert os.listdir(tmp_path) == ["walk.avi"]
