@@ -151,6 +151,29 @@ def test_quiz_explains_each_answer(folder: Path) -> None:
     assert answer(quiz("03.q", "Which?", ["a", "b"], "b", "Why."), "a") == "✗ Not so. Why."
 
 
+@pytest.mark.parametrize("value", [None, "other", 3, [], {"a": 1}, ["slower"] * 10**5, "x" * 10**6])
+def test_what_is_no_answer_is_not_stored(folder: Path, value: Any) -> None:
+    for question in (ask(), quiz("03.q", "Which?", OPTIONS, "slower", "")):
+        assert answer(question, value) == "That is no answer to this question."
+    number = predict("00.poses", "How many?", numbers=(0, 10, "poses"))
+    for wrong in (11, -1, float("nan"), float("inf"), 10**400, True, "4", [4]):
+        assert answer(number, wrong) == "That is no answer to this question."
+    assert not (folder / "predictions.json").exists()
+
+
+def test_a_long_answer_of_a_file_is_shown_short(folder: Path) -> None:
+    for long in ("x" * 10**6, ["y"] * 10**6):
+        entry = {"predictions": {KEY: {"answer": long}}}
+        (folder / "predictions.json").write_text(json.dumps(entry))
+        assert len(str(reveal(KEY, "slower"))) < 3000
+        assert ask().answer is None
+
+
+def test_a_notice_is_false_if_it_is_bad(folder: Path) -> None:
+    assert export("mine.json")
+    assert not export("mine.json")
+
+
 def test_running_a_cell_again_frees_the_widget_before() -> None:
     first = ask()
     second = ask()
