@@ -117,8 +117,7 @@ def _told(path: str | os.PathLike[str]) -> tuple[Path, dict[str, Any]]:
             ) from None
         raise FileNotFoundError(f"there is no session {quoted(file)}") from None
     except ValueError as error:
-        why = str(error) if "JSON" in str(error) else f"it is not JSON, {error}"
-        raise ValueError(f"{quoted(file.name)} is not a session: {why}") from None
+        raise ValueError(f"{quoted(file.name)} is not a session: {error}") from None
     name = quoted(file.name)
     if not isinstance(told, dict) or told.get("format") != FORMAT:
         raise ValueError(f"{name} is not a session: it does not say 'format': {FORMAT!r}")

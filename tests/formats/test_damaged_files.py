@@ -259,7 +259,7 @@ EVENT = {"run": 0, "tick": 1, "time": 0.1, "kind": "pause", "what": {}}
         ("", "it is not JSON (line 1"),
         ("null", "does not say 'format'"),
         (gzip.compress(b"{}"), "it is a gzip archive"),
-        (b"\xff\xfe\x00", "it is not JSON"),
+        (b"\xff\xfe\x00", "it is not text in UTF-8"),
     ],
 )
 def test_settings_that_are_none_are_named(room, told, words):

@@ -181,7 +181,7 @@ def test_files_that_are_not_there_or_not_text(session, tmp_path):
     with pytest.raises(FileNotFoundError, match=r"has its numbers in '.*run.csv', which is missi"):
         load(settings)
     settings.write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(ValueError, match="it is not JSON"):
+    with pytest.raises(ValueError, match="it is not text in UTF-8"):
         load(settings)
 
 
