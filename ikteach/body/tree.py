@@ -101,6 +101,11 @@ class Tree:
         """What `forward` needs of the tree at every call and θ does not change."""
         return Plan.of(self)
 
+    @cached_property
+    def free(self) -> bool:
+        """Whether no joint is locked or stiff: all have mobility 1."""
+        return bool((self.mobility == 1).all())
+
     def __len__(self) -> int:
         return len(self.names)
 
