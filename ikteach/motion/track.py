@@ -127,10 +127,10 @@ def track(
         for column, value in zip(kept, (pose, error, capped / iterations, done.held), strict=True):
             column.append(value)
     seconds = (perf_counter() - began) / (len(targets) * iterations)
+    poses, errors, shares, holds = map(np.array, kept)
     return Track(
-        name_of(chosen),
-        tree, effectors, clock, targets, np.broadcast_to(start, np.shape(pose)),
-        *map(np.array, kept), seconds=seconds,
+        name_of(chosen), tree, effectors, clock, targets, np.broadcast_to(start, np.shape(pose)),
+        poses, errors, shares, holds, seconds,
     )  # fmt: skip
 
 
