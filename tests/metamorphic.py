@@ -86,7 +86,7 @@ class Along:
     def jacobian(self, J):
         """J (..., 3k, n) [m/rad]."""
         columns = self.error(np.asarray(J).swapaxes(-1, -2))
-        return columns[..., self.joints, :].swapaxes(-1, -2) / self.scale[:, None]
+        return columns[..., self.joints, :].swapaxes(-1, -2) / self.scale
 
 
 def unchanged(case, **other):
