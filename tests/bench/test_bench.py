@@ -1,10 +1,14 @@
 """The benches run; what they measure is for whoever runs them by hand."""
 
 import damping
+import fuzz
 import numpy as np
 import reach
 import speed
 from numpy.testing import assert_allclose
+
+from ikteach import figures, forward, locate, step
+from ikteach.motion import hold
 
 
 def test_speed_compares_things_that_do_the_same():
@@ -39,3 +43,33 @@ def test_following_arrives_where_it_can():
 def test_reach_prints_its_tables(capsys):
     reach.main(cursors=6, ticks=60)
     assert capsys.readouterr().out.count("\n") == 2 * (3 + len(reach.study.WAYS))
+
+
+def test_no_promise_is_broken(capsys):
+    assert fuzz.main(ticks=6000, seed=1) == 0
+    assert "violations 0" in capsys.readouterr().out
+
+
+def test_a_broken_promise_is_seen():
+    tree, effectors = figures.human()
+    theta = np.stack([tree.rest] * 2)
+    targets = locate(forward(tree, theta), effectors) + 0.3
+    done = step(tree, theta, effectors, targets, "dls", max_step=0.05)
+    told = {"max_step": 0.05, "mobility": None, "limits": hold}
+    assert not fuzz.violations(tree, theta, done, **told)
+    for name, spoilt, told_else in (
+        ("finite", {"theta": done.theta * np.nan}, {}),
+        ("locked", {}, {"mobility": np.zeros(20)}),
+        ("cap", {}, {"max_step": 0.01}),
+        ("dtheta", {"dtheta": done.dtheta * 1.1}, {}),
+        ("within", {"theta": done.theta + 9}, {}),
+        ("capped without a cap", {"capped": np.ones(2, dtype=bool)}, {"max_step": None}),
+        ("the cap is not told", {"capped": np.zeros(2, dtype=bool), "held": done.held & False}, {}),
+    ):
+        broken = fuzz.violations(tree, theta, done._replace(**spoilt), **told | told_else)
+        assert name in broken, name
+    out = theta + 4.0
+    stays = done._replace(theta=out, dtheta=0 * out)
+    assert {"back"} <= fuzz.violations(tree, out, stays, **told).keys()
+    further = done._replace(theta=out + 0.01, dtheta=0 * out + 0.01)
+    assert {"further out"} <= fuzz.violations(tree, out, further, **told).keys()

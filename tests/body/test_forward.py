@@ -7,7 +7,7 @@ from hypothesis import given
 from numpy.testing import assert_allclose, assert_array_equal
 from strategies import SEEDS, SHAPES, anybody, poses
 
-from ikteach import Effectors, Joint, Tree, figures, forward, locate
+from ikteach import Effectors, Joint, Tree, figures, forward, jacobian, locate
 
 
 @given(anybody(), SHAPES, SEEDS)
@@ -98,3 +98,33 @@ def test_a_wrong_number_of_angles(shape):
     tree, _ = figures.human()
     with pytest.raises(ValueError, match=r"20 joints need theta of shape \(\.\.\., 20\), not \("):
         forward(tree, np.zeros(shape))
+
+
+@pytest.mark.parametrize(
+    ("theta", "match"),
+    [
+        (["0"] * 20, "theta must be made of numbers"),
+        ([np.nan] * 20, "the angle of 'spine.bend' is not finite"),
+        ([1j] * 20, "theta must be made of numbers"),
+        (None, "theta must be made of numbers, not None"),
+    ],
+)
+def test_what_is_no_pose(theta, match):
+    tree, effectors = figures.human()
+    with pytest.raises(ValueError, match=match):
+        forward(tree, theta)
+    with pytest.raises(TypeError, match="a Tree is needed here, not Figure"):
+        forward((figures.human()), theta)
+    frames = forward(tree, tree.rest)
+    with pytest.raises(TypeError, match="Effectors are needed here"):
+        locate(frames, tree)
+    with pytest.raises(TypeError, match="the frames of forward"):
+        locate(tree.rest, effectors)
+    with pytest.raises(ValueError, match="of a body of 17 joints, not of 20"):
+        locate(frames, figures.simulator().effectors)
+    with pytest.raises(ValueError, match="these frames are of 20 joints, not of 17"):
+        jacobian(figures.simulator().tree, frames, effectors)
+    with pytest.raises(ValueError, match=r"a point per effector, \(\.\.\., 4, 3\), not the shape"):
+        jacobian(tree, frames, effectors, at=[0, 0, 0])
+    with pytest.raises(ValueError, match="at must be made of numbers"):
+        jacobian(tree, frames, effectors, at="there")

@@ -3,6 +3,7 @@
 from functools import partial
 from math import inf, nan
 
+import fuzz
 import numpy as np
 import pytest
 from hypothesis import assume, given
@@ -246,6 +247,58 @@ def test_the_trees_own_mobility_is_used():
     assert done.dtheta[0] == 0 != done.dtheta[1]
 
 
+@given(
+    scenes(), METHODS, st.sampled_from([hold, clip, ignore]), st.sampled_from([whole, per_chain]),
+    st.sampled_from([None, 0.0, 1e-3, 0.1, 2.0, inf]), st.sampled_from([0.1, 1.0, 10.0]), SEEDS,
+)  # fmt: skip
+def test_promises_in_order(scene, solver, limits, cap, max_step, far, seed):
+    """A start beyond the limits on some joints, some joints locked, and a cap of every kind."""
+    tree, theta, effectors, targets = scene
+    rng = np.random.default_rng(seed)
+    theta = theta + far * rng.normal(size=theta.shape) * rng.integers(0, 2, theta.shape)
+    mobility = rng.choice([0.0, 0.5, 1.0], theta.shape)
+    told = {"max_step": max_step, "cap": cap, "mobility": mobility, "limits": limits}
+    done = step(tree, theta, effectors, targets, solver, **told)
+    assert not fuzz.violations(tree, theta, done, **told)
+
+
+def test_a_joint_comes_back_by_the_cap_and_the_others_make_up_for_it():
+    """The hand stays where it is while the last of three joints is turned back."""
+    tree = Tree.of([Joint("a"), Joint("b", "a", (1, 0, 0)), Joint("c", "b", (1, 0, 0), upper=1)])
+    effectors = Effectors.of(tree, {"hand": ("c", (0.5, 0, 0))})
+    theta = np.array([0.4, 0.5, 1.5])
+    goal = locate(forward(tree, theta), effectors)
+    far = {}
+    for limits in (hold, clip):
+        pose, far[limits] = theta, 0.0
+        for tick in range(1, 25):
+            done = step(tree, pose, effectors, goal, pseudoinverse, max_step=0.02, limits=limits)
+            pose = done.theta
+            assert_allclose(pose[2], 1.5 - 0.02 * tick)
+            assert done.held[2]
+            assert done.capped  # the way back was shortened
+            gap = goal - locate(forward(tree, pose), effectors)
+            far[limits] = max(far[limits], float(np.linalg.norm(gap)))
+    assert far[hold] < 2e-3 < 5e-3 < far[clip]
+    at_once = step(tree, theta, effectors, goal, pseudoinverse)
+    assert at_once.theta[2] == 1
+    assert not at_once.capped
+
+
+def test_a_locked_joint_stays_beyond_its_limits():
+    tree, effectors = HUMAN
+    knee, theta = tree.index("knee.l"), tree.rest.copy()
+    theta[knee] = -0.5
+    for limits in (hold, clip, ignore):
+        for max_step in (None, 0.01):
+            done = step(
+                tree, theta, effectors, GOALS + 0.1, "dls", max_step=max_step, limits=limits,
+                mobility=np.arange(20) != knee,
+            )  # fmt: skip
+            assert done.dtheta[knee] == 0
+            assert abs(done.dtheta).max() > 1e-3
+
+
 def test_a_pose_outside_the_limits_comes_back():
     tree, effectors = HUMAN
     targets = locate(forward(tree, tree.rest), effectors)
@@ -275,7 +328,10 @@ REST, GOALS = good()["theta"], good()["targets"]
          r"4 effectors need targets of shape \(\.\.\., 4, 3\), not \(3, 3\)"),
         ({"targets": GOALS.ravel()}, ValueError, r"targets of shape .* not \(12,\)"),
         ({"targets": GOALS[:, :2]}, ValueError, r"targets of shape .* not \(4, 2\)"),
-        ({"targets": None}, ValueError, r"targets of shape .* not \(\)"),
+        ({"targets": None}, ValueError, "targets must be made of numbers, not None"),
+        ({"targets": 1.0}, ValueError, r"targets of shape .* not \(\)"),
+        ({"targets": np.eye(4)}, ValueError,
+         r"4 effectors need .*, not \(4, 4\); a target is a point, and no pose"),
         ({"targets": "there"}, ValueError, "targets must be made of numbers, not 'there'"),
         ({"targets": [[1, 2, 3], [1, 2]]}, ValueError, "targets must be made of numbers"),
         ({"targets": spoilt(GOALS, (2, 1), nan)}, ValueError, "target of 'hand.r' is not finite"),
@@ -294,13 +350,29 @@ REST, GOALS = good()["theta"], good()["targets"]
         ({"solver": partial(dls, damping=-1)}, ValueError, "damping must be 0 or more"),
         ({"solver": partial(dls, damping=nan)}, ValueError, "damping must be 0 or more"),
         ({"solver": lambda J, e: J[0] * nan}, FloatingPointError, "<lambda> gave a step that is"),
-        ({"mobility": 0.5}, ValueError, r"mobility needs one number a joint, \(20,\), not \(\)"),
-        ({"mobility": np.ones(19)}, ValueError, r"mobility needs one number a joint"),
+        ({"mobility": 0.5}, ValueError, r"mobility needs one number per joint, \(20,\), not \(\)"),
+        ({"mobility": np.ones(19)}, ValueError, r"mobility needs one number per joint"),
         ({"mobility": spoilt(np.ones(20), 3, 1.1)}, ValueError, "mobility of 'shoulder.out.l'"),
         ({"mobility": spoilt(np.ones(20), 18, -0.1)}, ValueError, "mobility of 'knee.r'"),
         ({"mobility": spoilt(np.ones(20), 0, nan)}, ValueError, "mobility of 'spine.bend'"),
         ({"mobility": "none"}, ValueError, "mobility must be made of numbers"),
         ({"max_step": -0.1}, ValueError, "max_step must be 0 or more, not -0.1"),
+        ({"max_step": [0.1, nan]}, ValueError, r"max_step must be 0 or more, not \[0.1, nan\]"),
+        ({"theta": np.stack([REST] * 2), "max_step": [0.1] * 3}, ValueError,
+         r"batches of theta, targets, .* do not fit together: \(2,\) and .*\(3,\)"),
+        ({"theta": np.stack([REST] * 2), "mobility": np.ones((3, 20))}, ValueError, "fit together"),
+        ({"theta": np.stack([REST] * 2), "targets": np.stack([GOALS] * 3)}, ValueError,
+         "do not fit together"),
+        ({"theta": np.stack([REST] * 2), "max_error": np.ones((3, 4))}, ValueError, "together"),
+        ({"max_error": "far"}, ValueError, "max_error must be made of numbers, not 'far'"),
+        ({"mobility": ["1"] * 20}, ValueError, "mobility must be made of numbers"),
+        ({"theta": REST.astype(str)}, ValueError, "theta must be made of numbers"),
+        ({"theta": REST * 1j}, ValueError, "theta must be made of numbers"),
+        ({"frames": 3}, TypeError, r"frames of forward\(tree, theta\) are needed here, not 3"),
+        ({"tree": HUMAN}, TypeError, "a Tree is needed here, not Figure"),
+        ({"effectors": HUMAN}, TypeError, "Effectors are needed here, not Figure"),
+        ({"effectors": figures.simulator().effectors}, ValueError,
+         "these effectors are of a body of 17 joints, not of 20"),
         ({"max_step": nan}, ValueError, "max_step must be 0 or more, not nan"),
         ({"max_step": "5°"}, ValueError, "max_step must be made of numbers, not '5°'"),
         ({"max_error": -1}, ValueError, "max_error must be 0 or more, not -1"),
@@ -314,9 +386,10 @@ REST, GOALS = good()["theta"], good()["targets"]
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_named(wrong, error, match):
-    tree, effectors = HUMAN
-    with pytest.raises(error, match=match):
-        step(tree, effectors=effectors, **(good() | wrong))
+    given_ = dict(zip(("tree", "effectors"), HUMAN, strict=True)) | good() | wrong
+    with pytest.raises(error, match=match) as told:
+        step(**given_)
+    assert len(str(told.value)) < 300
 
 
 def test_a_solver_that_fails_at_a_limit_is_named_too():
