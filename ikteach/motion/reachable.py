@@ -14,12 +14,14 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Mask
 from ikteach.body import Effectors, Tree, forward, jacobian, locate
-from ikteach.motion.step import checked, numbers
+from ikteach.checks import number
+from ikteach.motion.step import checked
 from ikteach.solvers import dls
 
 NEAR = 1e-3  # of a chain's length: what is so near is reached
 VOLLEYS = (3, 8, 20)  # starts after the rest pose, for what has not been reached till then
 SWARM = 24  # poses tried for each start, of which the nearest is improved
+FEW = 4  # the same where each goal has a swarm of its own
 OVER = 1 / 4  # of its range that a joint is drawn beyond its limits, and then put to them
 ROUNDS = 60  # of improving it; most take 20
 STILL = 1e-9  # of the chain's length: a step that moves no joint further has arrived
@@ -39,7 +41,7 @@ def reachable(
     It is sure of True, as it has found a pose. False means that many starts have led to none.
     """
     _, targets = checked(tree, tree.rest, effectors, targets)
-    near = _tolerance(tree, effectors, targets) if within is None else _bound(within)
+    near = _tolerance(tree, effectors, targets) if within is None else number("within", within)
     return np.asarray(_search(tree, effectors, targets, near) <= near)
 
 
@@ -50,7 +52,7 @@ def nearest(tree: Tree, effectors: Effectors, targets: ArrayLike, *, within: flo
     where `within` is met [m].
     """
     _, targets = checked(tree, tree.rest, effectors, targets)
-    return _search(tree, effectors, targets, _bound(within))
+    return _search(tree, effectors, targets, number("within", within))
 
 
 def annulus(tree: Tree, effectors: Effectors, i: int) -> tuple[Array, float, float]:
@@ -131,14 +133,7 @@ def _tolerance(tree: Tree, effectors: Effectors, targets: Array) -> Array:
     return NEAR * np.where(length > 0, length, away)
 
 
-def _bound(within: float) -> Array:
-    array = numbers("within", within)
-    if array.ndim or not array >= 0:
-        raise ValueError(f"within must be one number of metres, 0 or more, not {within!r}")
-    return array
-
-
-def _search(tree: Tree, effectors: Effectors, targets: Array, near: Array) -> Array:
+def _search(tree: Tree, effectors: Effectors, targets: Array, near: ArrayLike) -> Array:
     """The least distance (..., k) found to targets (..., k, 3); enough is `near` (..., k)."""
     out = np.empty(targets.shape[:-1])
     enough = np.broadcast_to(near, out.shape)
@@ -169,20 +164,23 @@ def _starts(limb: _Limb, goals: Array, count: int, rng: np.random.Generator) -> 
     """So many poses (g, count, n) for each goal (g, 3), each the nearest of a swarm at random.
 
     Limits may lie anywhere: what has only one goes on from it, and what has none starts around
-    rest, hinges in a full turn, slides as far as the chain is long.
+    rest, hinges in a full turn, slides as far as there and as the chain is long.
     """
     tree, end = limb.tree, limb.end
-    span = np.where(tree.slide, limb.length, pi)
+    endless = limb.endless.any()  # if not, the swarm is the same for all goals
+    far = limb.length + np.linalg.norm(goals, axis=1) if endless else np.array([limb.length])
+    span = np.where(tree.slide, far[:, None], pi)
     from_above = np.where(np.isfinite(tree.upper), tree.upper - 2 * span, tree.rest - span)
     lower = np.where(np.isfinite(tree.lower), tree.lower, from_above)
     upper = np.where(np.isfinite(tree.upper), tree.upper, lower + 2 * span)
-    wide = OVER * (upper - lower)
-    swarm = rng.uniform(lower - wide, upper + wide, (count, SWARM, len(tree)))
+    share = rng.uniform(-OVER, 1 + OVER, (count, FEW if endless else SWARM, len(tree)))
+    swarm = lower[:, None, None] + share * (upper - lower)[:, None, None]
     swarm = np.minimum(np.maximum(swarm, tree.lower), tree.upper)  # some stand at their limits
     s = locate(forward(tree, swarm), end)[..., 0, :]
     gap = np.linalg.norm(goals[:, None, None] - s, axis=-1)  # (g, count, SWARM)
-    theta = swarm[np.arange(count), gap.argmin(axis=-1)]
-    if limb.endless.any():  # what is far away along them is met before hinges turn for it
+    of = np.arange(len(swarm))[:, None] if endless else 0
+    theta = swarm[of, np.arange(count), gap.argmin(axis=-1)]
+    if endless:  # what is far away along slides is met before hinges turn for it
         frames = forward(tree, theta)
         e = goals[:, None] - locate(frames, end)[..., 0, :]
         theta = theta + dls(jacobian(tree, frames, end) * limb.endless, e, damping=0.0)
