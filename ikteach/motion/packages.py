@@ -16,7 +16,7 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Index, Mask, frozen
 from ikteach.body import Effectors, Tree, forward, jacobian, partials
-from ikteach.body.figures import TOGETHER, Figure, simulator
+from ikteach.body.figures import TOGETHER, simulator
 
 MIDDLE = 0.05  # [m]; so near the middle plane no package answers
 NONE = -1
@@ -69,8 +69,8 @@ def _degree(row: str) -> str:
 class Body:
     """The simulator's figure with what its arms are: lengths [m], rows, degrees of motion."""
 
-    def __init__(self, figure: Figure | None = None) -> None:
-        self.tree, _ = figure or simulator()
+    def __init__(self) -> None:
+        self.tree, _ = simulator()
         self.degrees = degrees(self.tree)
         self.C: Array = frozen(coupling(self.tree))
         tree, elbow = self.tree, self.tree.index("elbow.r")

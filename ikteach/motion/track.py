@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Mask
-from ikteach.body import Effectors, Tree, forward, jacobian, locate
+from ikteach.body import Effectors, Tree, forward, locate
+from ikteach.motion.rank import smallest_sigma
 from ikteach.motion.step import checked, numbers, solver_of, step
 from ikteach.solvers import Solver, name_of
 
@@ -55,9 +56,8 @@ class Track:
 
     @cached_property
     def smallest_sigma(self) -> Array:
-        """The smallest singular value of J at each pose, (T, ...) [m/rad]: 0 is singular."""
-        J = jacobian(self.tree, forward(self.tree, self.theta), self.effectors)
-        return np.linalg.svdvals(J)[..., -1]
+        """The smallest σ that the body can have, at each pose (T, ...) [m/rad]: 0 is singular."""
+        return smallest_sigma(self.tree, self.effectors, self.theta)
 
     @cached_property
     def jitter(self) -> Array:

@@ -236,7 +236,7 @@ def test_mirrored_sides_come_as_near():
 
 @pytest.mark.parametrize("within", [-1, np.nan, "near", [1, 2], None])
 def test_a_bound_is_one_length(within):
-    with pytest.raises(ValueError, match="within must be (one number, )?0 or more, and finite"):
+    with pytest.raises(ValueError, match=r"within must be (one number, )?0 or more, and finite"):
         nearest(*figures.planar_arm(2), [[1, 1, 0]], within=within)
 
 
