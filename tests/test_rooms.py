@@ -16,7 +16,7 @@ TOOLS = {"arrays", "checks", "names"}  # what every room may use
 BELOW = {  # what each room may import of the package
     "arrays": set(),
     "checks": {"arrays"},
-    "names": set(),
+    "names": {"checks"},
     "server": set(),
     "body": TOOLS,
     "solvers": TOOLS,
