@@ -42,12 +42,13 @@ PATIENCE = 300  # ticks before a run that goes on is said not to settle
 LOOK_EVERY = 10  # ticks
 
 
-def period(poses: Array, longest: int = LONGEST) -> Index:
+def period(poses: ArrayLike, longest: int = LONGEST) -> Index:
     """After how many ticks the poses (T, ..., n) repeat themselves at the end, (...); 0: not.
 
     The last p ≥ 2 ticks have to be the p before them, to a tenth of how far they range, and to
     range over more than `SWAY`. The smallest such p is told.
     """
+    poses = numbers("poses", poses)
     found = np.zeros(poses.shape[1:-1], dtype=np.intp)
     for p in range(min(longest, len(poses) // 2), 1, -1):
         last, before = poses[-p:], poses[-2 * p : -p]

@@ -208,7 +208,10 @@ def _reach(
 ) -> tuple[Array, Array]:  # fmt: skip
     """The new poses (b, n), and (det, independence, σ) (3, b), of figures that use one package."""
     if number == NONE:
-        return theta + homewards(body, theta) @ body.C.T, np.full((3, len(theta)), np.nan)
+        ease = EASE if max_step is None else min(EASE, a_number("max_step", max_step))
+        home = np.clip(body.tree.rest - theta, -ease, ease)
+        home[:, body.neck] = 0
+        return theta + home, np.full((3, len(theta)), np.nan)
     package = PACKAGES[number] if way.packaged else together(PACKAGES[number].side)
     used = body.columns(package.degrees)
     idle = homewards(body, theta, besides=package.degrees if way.packaged else ())
