@@ -57,14 +57,16 @@ def function(name: str, value: Any) -> Callable[..., Any]:
     return value
 
 
-def system(J: ArrayLike, e: ArrayLike) -> tuple[Array, Array]:
+def system(J: Any, e: Any) -> tuple[Array, Array]:
     """Make arrays of floats of J (..., m, n) and e (..., m); ValueError says what does not fit."""
+    common = type(J) is type(e) is np.ndarray and J.dtype is e.dtype is FLOAT
+    if common and J.shape[:-1] == e.shape != () and finite(J) and finite(e):
+        return J, e
     J, e = matrix(J), numbers("e", e)
     if e.shape[-1:] != J.shape[-2:-1]:
         m = J.shape[-2]
         raise ValueError(f"a J of {m} rows needs e of shape (..., {m}), not {e.shape}")
-    if e.shape[:-1] != J.shape[:-2]:
-        together("J and e", J.shape[:-2], e.shape[:-1])
+    together("J and e", J.shape[:-2], e.shape[:-1])
     if not finite(e):
         raise ValueError("e is not finite")
     return J, e
@@ -82,6 +84,9 @@ def matrix(J: ArrayLike) -> Array:
 
 def together(what: str, *batches: tuple[int, ...]) -> tuple[int, ...]:
     """The batch that all of these fit into; ValueError says which they are."""
+    sizes = set(batches) - {()}
+    if len(sizes) <= 1:  # the common case
+        return sizes.pop() if sizes else ()
     try:
         return np.broadcast_shapes(*batches)
     except ValueError:

@@ -5,16 +5,14 @@ from collections.abc import Iterable
 
 from ikteach.checks import LONG, shown
 
-MANY = 240  # letters of a list of names that a sentence shows
+MANY = 12  # names that a sentence lists
 
 
 def unknown(kind: str, name: object, known: Iterable[str]) -> str:
     """Say that there is no `kind` called `name`, and what it may have meant or what there is."""
     names = list(known)
-    close = difflib.get_close_matches(str(name)[:LONG], names, n=3)
+    close = difflib.get_close_matches(name[:LONG] if isinstance(name, str) else shown(name), names)
     if close:
         return f"no {kind} {shown(name)}; did you mean {' or '.join(map(shown, close))}?"
-    there = ", ".join(map(shown, names))
-    if len(there) > MANY:
-        there = f"{there[:MANY]} …, {len(names)} in all"
-    return f"no {kind} {shown(name)}; there are {there}"
+    more = f" and {len(names) - MANY} more" if len(names) > MANY else ""
+    return f"no {kind} {shown(name)}; there are {', '.join(map(shown, names[:MANY]))}{more}"

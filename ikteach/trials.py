@@ -126,8 +126,8 @@ def _targets(
         if targets.shape != (len(when), len(effectors), 3):
             k = len(effectors)
             raise ValueError(
-                f"the motion {shown(name)} gives targets {targets.shape}, and this body with"
-                f" {k} effectors needs ({len(when)}, {k}, 3)"
+                f"the motion {shown(name)} gives targets {targets.shape}, and this body needs"
+                f" ({len(when)}, {k}, 3)"
             )
         found.append(targets)
     return np.stack(found)

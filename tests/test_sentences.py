@@ -103,7 +103,7 @@ CALLS = {
     ),
     "directions, targets": (
         lambda: study.by_direction(*ARM, np.zeros(3), [1, 2]),
-        "need targets of shape",
+        "targets of shape",
     ),
     "ways in a list": (lambda: study.reaches([0, 0, 0], ["dls"]), "ways are {name: Way}"),
     "a solver for a way": (lambda: study.reaches([0, 0, 0], {"a": dls}), "'a' must be a Way"),
@@ -117,7 +117,7 @@ CALLS = {
     ),
     "a human's gait": (
         lambda: trials.reachable_throughout(*ARM, gait.MOTIONS),
-        r"'walking' gives targets \(8, 4, 3\), and this body with 1 effectors needs \(8, 1, 3\)",
+        r"'walking' gives targets \(8, 4, 3\), and this body needs \(8, 1, 3\)",
     ),
     "phases": (lambda: trials.reachable_throughout(*HUMAN, gait.MOTIONS, 0), "phases must be 1"),
     "no caps": (lambda: fair(caps={}), "caps are {name"),
@@ -161,7 +161,7 @@ CALLS = {
         lambda: experiment.downhill(*ARM, [0, 0, 0], GOALS[0], 1.0),
         r"gains \(g,\) are wanted",
     ),
-    "iterations": (lambda: experiment.iterations(*ARM, [1, 1], "dls"), "need targets of shape"),
+    "iterations": (lambda: experiment.iterations(*ARM, [1, 1], "dls"), "targets of shape"),
     "iterations, NaN": (
         lambda: experiment.iterations(*ARM, GOALS[0], "dls", within=np.nan),
         "within must be",

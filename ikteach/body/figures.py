@@ -2,15 +2,20 @@
 and the figure of CS 490 with 16 degrees of motion."""
 
 from collections.abc import Sequence
-from math import pi, radians, sqrt
+from math import inf, radians, sqrt
 from typing import NamedTuple
 
+import numpy as np
+
 from ikteach.body.tree import Effectors, Joint, Tree
+from ikteach.checks import count, numbers, shown
 
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 TILTED = (sqrt(14) / 8, 1 / 8, 7 / 8)  # the one skew axis of Buss's trees
 
 Vector = Sequence[float]
+
+MOST = 1000  # links of an arm
 
 
 class Figure(NamedTuple):
@@ -23,22 +28,24 @@ class Figure(NamedTuple):
 def planar_arm(links: int | Sequence[float] = 3) -> Figure:
     """An arm in the plane z = 0, stretched along x: so many links of 1 m, or links of these [m].
 
-    Its effector is "hand", at the end of the last link.
+    Its effector is "hand", at the end of the last link. Its joints turn without limits.
+    ValueError for lengths that are no numbers above 0, or more than 1000 of them.
     """
-    lengths = [1.0] * links if isinstance(links, int) else [float(length) for length in links]
-    if not lengths or not all(length > 0 for length in lengths):
-        raise ValueError(f"an arm needs links longer than 0, not {links!r}")
+    lengths = _lengths(links)
     joints: list[Joint] = []
     for i, offset in enumerate([0.0, *lengths[:-1]], start=1):
         parent = joints[-1].name if joints else None
-        joints.append(Joint(f"joint{i}", parent, (offset, 0, 0), Z, lower=-pi, upper=pi))
+        joints.append(Joint(f"joint{i}", parent, (offset, 0, 0), Z))
     tree = Tree.of(joints)
     hand = (joints[-1].name, (lengths[-1], 0, 0))
     return Figure(tree, Effectors.of(tree, {"hand": hand}))
 
 
 def y_shape() -> Figure:
-    """Buss's Y: a trunk and two arms of three hinges each, 7 joints and 2 effectors."""
+    """Buss's Y: a trunk and two arms of three hinges each, 7 joints and 2 effectors.
+
+    Without limits: his code writes ±π in every joint and asks for it nowhere.
+    """
     rows = [  # name, parent, place in the world at θ = 0, axis
         ("trunk", None, (0, -0.5, 0), Z),
         ("right.1", "trunk", (0, 0.4, 0), Z),
@@ -142,10 +149,13 @@ def planar_model(links: int = 3) -> Figure:
     """The earlier stage of CS 490: an arm in the plane with limits, of at most three links.
 
     They are 0.5, 0.4 and 0.3 m long; the effector "hand" is at the end of the last.
+    ValueError for another number of links.
     """
     lengths, limits, rest = (0.5, 0.4, 0.3), (180, 150, 120), (60, -60, -45)
-    if links not in (1, 2, 3):
-        raise ValueError(f"the planar model has 1, 2 or 3 links, not {links!r}")
+    try:
+        links = count("links", links, most=3)
+    except ValueError:
+        raise ValueError(f"the planar model has 1, 2 or 3 links, not {shown(links)}") from None
     joints = [
         Joint(
             f"joint{i + 1}", f"joint{i}" if i else None, (lengths[i - 1] if i else 0, 0, 0), Z,
@@ -156,6 +166,21 @@ def planar_model(links: int = 3) -> Figure:
     tree = Tree.of(joints)
     hand = (joints[-1].name, (lengths[links - 1], 0, 0))
     return Figure(tree, Effectors.of(tree, {"hand": hand}))
+
+
+def _lengths(links: int | Sequence[float]) -> list[float]:
+    """The lengths of an arm's links [m]."""
+    try:
+        lengths = np.ones(count("links", links, 1, MOST)) if np.ndim(links) == 0 else links
+        lengths = numbers("links", lengths)
+        fits = lengths.ndim == 1 and 1 <= len(lengths) <= MOST
+        fits = fits and bool(((lengths > 0) & (lengths < inf)).all())  # NaN is neither
+    except ValueError:  # not even numbers
+        fits = False
+    if not fits:
+        allowed = f"a number of links from 1 to {MOST}, or their lengths, above 0 and finite"
+        raise ValueError(f"an arm needs {allowed}, not {shown(links)}")
+    return list(map(float, np.asarray(lengths)))
 
 
 def _simulator_arm(side: str, x: int) -> list[Joint]:
@@ -239,8 +264,7 @@ def _in_world(
         return [a - b for a, b in zip(place, places[parent], strict=True)]
 
     tree = Tree.of(
-        Joint(name, parent, offset(place, parent), axis, lower=-pi, upper=pi)
-        for name, parent, place, axis in rows
+        Joint(name, parent, offset(place, parent), axis) for name, parent, place, axis in rows
     )
     points = {name: (joint, offset(place, joint)) for name, (joint, place) in ends.items()}
     return Figure(tree, Effectors.of(tree, points))

@@ -12,8 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ikteach.arrays import Array, ArrayLike
+from ikteach.arrays import Array, ArrayLike, finite
 from ikteach.body.tree import Effectors, Tree
+from ikteach.checks import numbers, shown
 
 
 class Frames(NamedTuple):
@@ -35,25 +36,52 @@ def forward(tree: Tree, theta: ArrayLike) -> Frames:
     All joints of one depth are joined to their parents by one stacked product, a batch of poses
     with them. Of long chains (`tree.DEEP`) every row first holds the last 1, 2, 4 … transforms, so
     that 64 joints take six rounds and not 63.
+    ValueError if θ has another shape, or a number that is not finite.
     Source: thesis section 3.1; MATHS "Tree, forward kinematics, Jacobian".
     """
-    theta = np.asarray(theta, dtype=float)
-    if theta.shape[-1:] != (len(tree),):
-        n = len(tree)
-        raise ValueError(f"{n} joints need theta of shape (..., {n}), not {theta.shape}")
-    T = _in_parent(tree, theta)
+    T = _in_parent(tree, pose(tree, theta))
     for rows, above in tree.plan.climbs:
         low = T[..., rows, :, :]
-        low[..., :3, :] = T.take(above, axis=-3)[..., :3, :4] @ low
+        low[...] = T.take(above, axis=-3)[..., :4] @ low
     T = T.take(tree.plan.rank, axis=-3)
     return Frames(T[..., :3, 3], T[..., :3, 4], T[..., :3, :3])
 
 
 def locate(frames: Frames, effectors: Effectors) -> Array:
     """Positions s_i = p_j + R_j offset_i of the effectors, (..., k, 3) [m]."""
+    fits(effectors, frames)
     p = frames.positions.take(effectors.joints, axis=-2)
     R = frames.orientations.take(effectors.joints, axis=-3)
     return p + np.matvec(R, effectors.offsets)
+
+
+def pose(tree: Tree, theta: ArrayLike) -> Array:
+    """θ (..., n) as an array, if it is a pose of this tree; ValueError says what is wrong."""
+    if not isinstance(tree, Tree):
+        raise TypeError(f"a Tree is needed here, not {shown(tree)}")
+    theta, n = numbers("theta", theta), len(tree)
+    if theta.shape[-1:] != (n,):
+        needs = "1 joint needs" if n == 1 else f"{n} joints need"
+        raise ValueError(f"{needs} theta of shape (..., {n}), not {theta.shape}")
+    if not finite(theta):
+        raise ValueError(f"the angle of {not_finite(theta, tree.names)} is not finite")
+    return theta
+
+
+def fits(effectors: Effectors, frames: Frames) -> None:
+    """Refuse what are no effectors, or no frames of a body with as many joints as theirs."""
+    if not isinstance(effectors, Effectors):
+        raise TypeError(f"Effectors are needed here, not {shown(effectors)}")
+    if not isinstance(frames, Frames):
+        raise TypeError(f"the frames of forward(tree, theta) are needed here, not {shown(frames)}")
+    theirs, n = effectors.carried.shape[1], frames.positions.shape[-2]
+    if theirs != n:
+        raise ValueError(f"these effectors are of a body of {theirs} joints, not of {n}")
+
+
+def not_finite(values: Array, names: tuple[str, ...]) -> str:
+    """The name of the first of values (..., n) that is not finite."""
+    return shown(names[int(np.argwhere(~np.isfinite(values))[0][-1])])
 
 
 def _in_parent(tree: Tree, theta: Array) -> Array:

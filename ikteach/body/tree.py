@@ -12,7 +12,8 @@ from numbers import Real
 
 import numpy as np
 
-from ikteach.arrays import Array, Index, Mask, frozen
+from ikteach.arrays import Array, ArrayLike, Index, Mask, frozen
+from ikteach.checks import numbers, shown
 from ikteach.names import unknown
 
 GROUND = -1
@@ -70,19 +71,21 @@ class Tree:
     @classmethod
     def of(cls, joints: Iterable[Joint]) -> "Tree":
         """The tree of these rows; ValueError or LookupError names the row that is wrong."""
+        if not isinstance(joints, Iterable):
+            raise TypeError(f"a tree is made of Joints, not of {shown(joints)}")
         rows = list(joints)
         if not rows:
             raise ValueError("a tree needs at least one joint")
         for row in rows:
             if not isinstance(row, Joint):
-                raise TypeError(f"a tree is made of Joints, not of {row!r}")
+                raise TypeError(f"a tree is made of Joints, not of {shown(row)}")
         parents: list[int] = []
         index: dict[str, int] = {}
         for row in rows:
             _check(row, index, [r.name for r in rows])
             parents.append(GROUND if row.parent is None else index[row.parent])
             index[row.name] = len(index)
-        axes = np.array([row.axis for row in rows], dtype=float)
+        axes = np.array([numbers("axis", row.axis) for row in rows])
         axes /= abs(axes).max(axis=1, keepdims=True)  # so that no square under- or overflows
         return cls(
             names=tuple(index),
@@ -101,6 +104,11 @@ class Tree:
         """What `forward` needs of the tree at every call and θ does not change."""
         return Plan.of(self)
 
+    @cached_property
+    def free(self) -> bool:
+        """Whether no joint is locked or stiff: all have mobility 1."""
+        return bool((self.mobility == 1).all())
+
     def __len__(self) -> int:
         return len(self.names)
 
@@ -110,6 +118,15 @@ class Tree:
             return self.names.index(name)
         except ValueError:
             raise LookupError(unknown("joint", name, self.names)) from None
+
+    def wrapped(self, theta: ArrayLike) -> Array:
+        """θ (..., n) as a person reads it: hinges without limits from −π to π [rad].
+
+        Whole turns change nothing of where such a body is. Hinges with limits and slides stay.
+        """
+        theta = np.asarray(numbers("theta", theta))
+        free = ~self.slide & np.isinf(self.lower) & np.isinf(self.upper)
+        return np.where(free, (theta + np.pi) % (2 * np.pi) - np.pi, theta)
 
     def above(self, joint: int) -> list[int]:
         """The joint and all it hangs from, up to the ground."""
@@ -141,12 +158,19 @@ class Effectors:
     @classmethod
     def of(cls, tree: Tree, points: Mapping[str, tuple[str, Sequence[float]]]) -> "Effectors":
         """The effectors {name: (joint, offset)} of `tree`; any number, on any joint."""
+        if not isinstance(tree, Tree):
+            raise TypeError(f"a Tree is needed here, not {shown(tree)}")
+        if not isinstance(points, Mapping):
+            raise TypeError(f"effectors are {{name: (joint, offset)}}, not {shown(points)}")
         if not points:
             raise ValueError("at least one effector is needed")
         for name, point in points.items():
+            who = shown(name)
+            if not isinstance(name, str) or not name:
+                raise ValueError(f"an effector needs a name, not {who}")
             if not isinstance(point, Sequence) or isinstance(point, str) or len(point) != 2:
-                raise ValueError(f"effector {name!r} needs (joint, offset), not {point!r}")
-            _check_vector(f"the offset of effector {name!r}", point[1])
+                raise ValueError(f"effector {who} needs (joint, offset), not {shown(point)}")
+            _check_vector(f"the offset of effector {who}", point[1])
         joints = [tree.index(joint) for joint, _ in points.values()]
         carried = np.zeros((len(points), len(tree)), dtype=bool)
         for row, joint in zip(carried, joints, strict=True):
@@ -251,39 +275,51 @@ def _rest(row: Joint) -> float:
 
 
 def _check(row: Joint, above: Mapping[str, int], names: Sequence[str]) -> None:
+    who, parent = shown(row.name), shown(row.parent)
     if not isinstance(row.name, str) or not row.name:
-        raise ValueError(f"a joint needs a name, not {row.name!r}")
+        raise ValueError(f"a joint needs a name, not {who}")
     if row.name in above:
-        raise ValueError(f"there are two joints called {row.name!r}")
+        raise ValueError(f"there are two joints called {who}")
     if row.parent is not None and row.parent not in list(above):
         if row.parent in names:
-            raise ValueError(f"{row.name!r} hangs from {row.parent!r}, which is not above it")
-        raise ValueError(f"{row.name!r} hangs from {row.parent!r}, but there is "
+            raise ValueError(f"{who} hangs from {parent}, which is not above it")
+        raise ValueError(f"{who} hangs from {parent}, but there is "
                          + unknown("joint", row.parent, names))  # fmt: skip
-    _check_vector(f"the offset of {row.name!r}", row.offset)
-    _check_vector(f"the axis of {row.name!r}", row.axis)
+    _check_vector(f"the offset of {who}", row.offset)
+    _check_vector(f"the axis of {who}", row.axis)
     if not np.any(row.axis):
-        raise ValueError(f"the axis of {row.name!r} is zero; it needs a direction")
+        raise ValueError(f"the axis of {who} is zero; it needs a direction")
     for what in ("lower limit", "upper limit", "rest", "mobility"):
         value = getattr(row, what.split()[0])
-        if not (isinstance(value, Real) or (what == "rest" and value is None)):
-            raise ValueError(f"the {what} of {row.name!r} must be a number, not {value!r}")
+        if not (_is_number(value) or (what == "rest" and value is None)):
+            raise ValueError(f"the {what} of {who} must be a number, not {shown(value)}")
+    if not isinstance(row.slide, bool | np.bool_):
+        raise ValueError(f"slide of {who} must be True or False, not {shown(row.slide)}")
     if not row.lower <= row.upper:
-        raise ValueError(f"{row.name!r} has lower limit {row.lower} above its upper {row.upper}")
+        raise ValueError(f"{who} has lower limit {row.lower} above its upper {row.upper}")
     if (math.isinf(row.lower) and row.lower > 0) or (math.isinf(row.upper) and row.upper < 0):
-        raise ValueError(f"{row.name!r} has no angle within [{row.lower}, {row.upper}]")
+        raise ValueError(f"{who} has no angle within [{row.lower}, {row.upper}]")
     if not (math.isfinite(_rest(row)) and row.lower <= _rest(row) <= row.upper):
-        raise ValueError(
-            f"the rest {row.rest} of {row.name!r} lies outside [{row.lower}, {row.upper}]"
-        )
+        raise ValueError(f"the rest {row.rest} of {who} lies outside [{row.lower}, {row.upper}]")
     if not 0 <= row.mobility <= 1:
-        raise ValueError(f"the mobility of {row.name!r} is {row.mobility}; it goes from 0 to 1")
+        raise ValueError(f"the mobility of {who} is {row.mobility}; it goes from 0 to 1")
+
+
+def _is_number(value: object) -> bool:
+    """Whether it is a number that a float can hold, and no switch; NaN and ±∞ are such."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return False
+    try:
+        float(value)
+    except OverflowError:
+        return False
+    return True
 
 
 def _check_vector(what: str, vector: Sequence[float]) -> None:
     try:
-        array = np.asarray(vector, dtype=float)
-    except (TypeError, ValueError):
-        raise ValueError(f"{what} must be three numbers, not {vector!r}") from None
+        array = numbers(what, vector)
+    except ValueError:
+        raise ValueError(f"{what} must be three numbers, not {shown(vector)}") from None
     if array.shape != (3,) or not np.isfinite(array).all():
-        raise ValueError(f"{what} must be three finite numbers, not {vector!r}")
+        raise ValueError(f"{what} must be three finite numbers, not {shown(vector)}")

@@ -5,11 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ikteach.arrays import Array, finite, frozen
+from ikteach.arrays import Array, frozen
 from ikteach.body import Effectors
+from ikteach.checks import shown
 from ikteach.motion.step import solver_of
 from ikteach.names import unknown
-from ikteach.solvers import Solver, name_of
+from ikteach.solvers import Solver, ask, name_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,13 +34,15 @@ class Mix:
     @classmethod
     def of(cls, effectors: Effectors, methods: Mapping[str, Solver | str]) -> "Mix":
         """The mix for these effectors; LookupError for an effector or method that is not there."""
+        if not isinstance(methods, Mapping):
+            raise TypeError(f"a mix is made of {{effector: method}}, not of {shown(methods)}")
         for name in methods:
             if name not in effectors.names:
                 raise LookupError(unknown("effector", name, effectors.names))
         if missing := [name for name in effectors.names if name not in methods]:
             raise ValueError(f"a mix needs a method for every effector; {missing[0]!r} has none")
         chosen = [solver_of(methods[name]) for name in effectors.names]
-        distinct = list(dict.fromkeys(chosen))
+        distinct = list({id(one): one for one in chosen}.values())
         has = np.array([[one is other for other in chosen] for one in distinct], dtype=float)
         carried = effectors.carried.astype(float)
         share = has @ carried / np.maximum(carried.sum(axis=0), 1)
@@ -47,9 +50,9 @@ class Mix:
         return cls(tuple(distinct), frozen(share), names)
 
     def __call__(self, J: Array, e: Array) -> Array:
-        """Δθ (..., n) for J (..., 3k, n) and e (..., 3k)."""
-        steps = [part * solver(J, e) for solver, part in zip(self.solvers, self.share, strict=True)]
-        return np.sum(steps, axis=0)
+        """Δθ (..., n) for J (..., 3k, n) and e (..., 3k); the errors are those of `ask`."""
+        parts = zip(self.solvers, self.share, strict=True)
+        return np.sum([share * ask(solver, J, e) for solver, share in parts], axis=0)
 
     def __repr__(self) -> str:
         each = ", ".join(f"{name}: {name_of(solver)}" for name, solver in self.methods.items())
@@ -68,15 +71,12 @@ class Each:
         self._J: Array | None = None
 
     def __call__(self, J: Array, e: Array) -> Array:
-        """Δθ (p, n); FloatingPointError names the method whose answer is not finite."""
+        """Δθ (p, n); the errors are those of `ask`, and name the method."""
         if self._J is None:
             self._dtheta, asked = np.empty((len(J), J.shape[-1])), range(len(J))
         else:
             asked = (J != self._J).any(axis=(-2, -1)).nonzero()[0]
         for i in asked:
-            dtheta = self._dtheta[i] = self.solvers[i](J[i], e[i])
-            if not finite(dtheta):
-                name = name_of(self.solvers[i])
-                raise FloatingPointError(f"{name} gave a step that is not finite")
+            self._dtheta[i] = ask(self.solvers[i], J[i], e[i])
         self._J = J
         return self._dtheta.copy()

@@ -1,9 +1,9 @@
 """A figure that follows targets through time, one method, everything kept."""
 
+import inspect
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from numbers import Real
 from time import perf_counter
 from typing import Any
 
@@ -11,8 +11,10 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Mask
 from ikteach.body import Effectors, Tree, forward, locate
+from ikteach.checks import count, function, number, numbers, shown, together
 from ikteach.motion.rank import smallest_sigma
-from ikteach.motion.step import checked, numbers, solver_of, step
+from ikteach.motion.step import checked, solver_of, step
+from ikteach.names import unknown
 from ikteach.solvers import Solver, name_of
 
 ErrorClampRule = Callable[[Array, Array], ArrayLike]
@@ -56,7 +58,10 @@ class Track:
 
     @cached_property
     def smallest_sigma(self) -> Array:
-        """The smallest σ that the body can have, at each pose (T, ...) [m/rad]: 0 is singular."""
+        """The smallest singular value of J at each pose, (T, ...) [m/rad]: 0 is singular.
+
+        Of as many as the body can have in any pose (`motion.rank.full_rank`).
+        """
         return smallest_sigma(self.tree, self.effectors, self.theta)
 
     @cached_property
@@ -74,7 +79,7 @@ def track(
     solver: Solver | str,
     *,
     theta: ArrayLike | None = None,
-    dt: float = 1 / 30,
+    dt: float | None = None,
     times: ArrayLike | None = None,
     iterations: int = 1,
     clamp_rule: ErrorClampRule | None = None,
@@ -83,46 +88,75 @@ def track(
     """Follow targets (T, ..., k, 3) [m], one frame after the other, from the pose θ (..., n).
 
     theta       the start [rad], the rest pose if not given
-    dt, times   seconds a frame, or the time (T,) of each
-    iterations  steps a frame
+    dt, times   seconds per frame (1/30 if not given), or the time (T,) of each: one of the two
+    iterations  steps per frame
     clamp_rule  how far the error is clamped next: a function of e (..., 3k) before and the
                 distances (..., k) after a step, giving max_error; before the first step no clamp.
                 `growing_clamp` is Buss's for SDLS
     options     go to `step`: max_error, max_step, cap, mobility, limits, at_targets
+
+    ValueError if a shape is wrong or a number not finite, TypeError for an unknown option; the
+    other errors are those of `step`.
     """
+    for name in options:
+        if name not in OPTIONS:
+            raise TypeError(unknown("option", name, OPTIONS))
     start = numbers("theta", tree.rest if theta is None else theta)
     targets = numbers("targets", targets)
     if targets.ndim < 3:
         raise ValueError(f"targets over time have shape (T, ..., k, 3), not {targets.shape}")
     if not len(targets):
         raise ValueError(f"there are no frames in targets of shape {targets.shape}")
-    if not (isinstance(iterations, Real) and iterations >= 1 and iterations % 1 == 0):
-        raise ValueError(f"iterations must be 1 or more, not {iterations!r}")
+    iterations, clock = count("iterations", iterations), _clock(len(targets), dt, times)
     start, targets = checked(tree, start, effectors, targets)
-    function = solver_of(solver)
-    poses, errors, caps, holds = [], [], [], []
-    pose, began = start, perf_counter()
+    together("theta and targets", start.shape[:-1], targets.shape[1:-2])
+    chosen = solver_of(solver)
+    if clamp_rule is not None:
+        function("clamp_rule", clamp_rule)
+    kept: Any = [], [], [], []
+    pose, frames, began = start, None, perf_counter()
     for goal in targets:
-        capped = 0.0
-        for _ in range(int(iterations)):
-            done = step(tree, pose, effectors, goal, function, **options)
+        capped: Any = 0.0
+        for _ in range(iterations):
+            done = step(tree, pose, effectors, goal, chosen, frames=frames, **options)
             pose, capped = done.theta, capped + done.capped
-            error = np.linalg.norm(goal - locate(forward(tree, pose), effectors), axis=-1)
+            frames = forward(tree, pose)
+            error = np.linalg.norm(goal - locate(frames, effectors), axis=-1)
             if clamp_rule is not None:
                 options["max_error"] = clamp_rule(done.e, error)
-        poses.append(pose)
-        errors.append(error)
-        caps.append(capped / iterations)
-        holds.append(done.held)
+        for column, value in zip(kept, (pose, error, capped / iterations, done.held), strict=True):
+            column.append(value)
     seconds = (perf_counter() - began) / (len(targets) * iterations)
-    clock = dt * np.arange(1, len(targets) + 1) if times is None else np.asarray(times, dtype=float)
-    if clock.shape != (len(targets),):
-        raise ValueError(f"{len(targets)} frames need {len(targets)} times, not {clock.shape}")
+    poses, errors, shares, holds = map(np.array, kept)
     return Track(
-        name_of(solver if not isinstance(solver, str) else function),
-        tree, effectors, clock, targets, np.broadcast_to(start, np.shape(pose)),
-        *map(np.array, (poses, errors, caps, holds)), seconds,
+        name_of(chosen), tree, effectors, clock, targets, np.broadcast_to(start, np.shape(pose)),
+        poses, errors, shares, holds, seconds,
     )  # fmt: skip
+
+
+OPTIONS = [  # what `track` may be told: its own, and what goes to `step` at every frame
+    name
+    for asked in (track, step)
+    for name, parameter in inspect.signature(asked).parameters.items()
+    if parameter.kind is parameter.KEYWORD_ONLY and name != "frames"
+]
+
+
+def _clock(frames: int, dt: float | None, times: ArrayLike | None) -> Array:
+    """The time (T,) of each frame [s]."""
+    if times is None:
+        dt = number("dt", 1 / 30 if dt is None else dt)
+        if not dt:
+            raise ValueError("dt must be more than 0")
+        return np.asarray(dt * np.arange(1, frames + 1), dtype=float)
+    if dt is not None:
+        raise ValueError("give dt or times, not both: the times say how far frames are apart")
+    clock = numbers("times", times)
+    if clock.shape != (frames,):
+        raise ValueError(f"{frames} frames need {frames} times, not {clock.shape}")
+    if not (np.isfinite(clock).all() and (np.diff(clock) > 0).all()):
+        raise ValueError(f"times must be finite and ascend, not {shown(times)}")
+    return clock
 
 
 def growing_clamp(e: Array, error: Array, *, base: float = 0.4) -> Array:

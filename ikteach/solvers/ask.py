@@ -10,14 +10,13 @@ from ikteach.checks import FLOAT, LONG, numbers, shown
 
 
 def ask(solver: Any, J: Array, e: Array) -> Array:
-    """Ask a solver for Δθ (..., n), given copies of J (..., m, n) and e (..., m) to read only.
+    """Ask a solver for Δθ (..., n), given J (..., m, n) and e (..., m) that it cannot write to.
 
     A list, or whole numbers, of the right shape are an answer too. ValueError says what came
     instead and what is wanted, FloatingPointError that a number is not finite; both name the
     solver. An error of the solver's own stays what it is, with a note of where it came from.
     """
-    J, e = J.copy(), e.copy()
-    J.flags.writeable = e.flags.writeable = False
+    J, e = sealed(J), sealed(e)
     try:
         answer = solver(J, e)
     except Exception as error:
@@ -29,14 +28,22 @@ def ask(solver: Any, J: Array, e: Array) -> Array:
         else:
             error.add_note(f"It was raised in the solver {name_of(solver)}.")
         raise
-    shape = (*J.shape[:-2], J.shape[-1])
-    if J.ndim != e.ndim + 1 or J.shape[:-2] != e.shape[:-1]:
+    shape = e.shape[:-1] + J.shape[-1:]
+    if J.shape[:-1] != e.shape:
         shape = (*np.broadcast_shapes(J.shape[:-2], e.shape[:-1]), J.shape[-1])
     if not (type(answer) is np.ndarray and answer.dtype is FLOAT and answer.shape == shape):
         answer = _converted(name_of(solver), answer, shape)
     if not finite(answer):
         raise FloatingPointError(f"{name_of(solver)} gave a step that is not finite")
     return answer
+
+
+def sealed(array: Array) -> Array:
+    """The array if nobody can write to it, else a copy to which nobody can."""
+    if array.flags.writeable:
+        array = array.copy()
+        array.setflags(write=False)
+    return array
 
 
 def name_of(solver: Any) -> str:

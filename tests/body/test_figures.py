@@ -71,10 +71,23 @@ def test_an_arm_is_stretched_along_x(links):
     assert_allclose(locate(forward(tree, tree.rest), effectors), [[length, 0, 0]])
 
 
-@pytest.mark.parametrize("links", [0, -1, [], [1, 0], [1, -1], [float("nan")]])
+@pytest.mark.parametrize("links", [3, np.int64(3), 3.0, [1, 1, 1], np.ones(3, np.float32)])
+def test_an_arm_of_three_links(links):
+    tree, _ = figures.planar_arm(links)
+    assert len(tree) == 3
+    assert not np.isfinite([tree.lower, tree.upper]).any()
+
+
+@pytest.mark.parametrize(
+    "links",
+    [0, -1, [], [1, 0], [1, -1], [np.nan], np.nan, 2.5, True, None, "3", [1, "2"], ["1", "2"],
+     [1, np.inf], [[1, 2], [3, 4]], [[1], [2, 3]], 10**9, 10**400, [1.0] * 1001, 1j, {1: 2}, abs],
+    ids=lambda links: str(links)[:20],
+)  # fmt: skip
 def test_an_arm_without_links(links):
-    with pytest.raises(ValueError, match="an arm needs links longer than 0"):
+    with pytest.raises(ValueError, match="an arm needs a number of links from 1 to 1000, or") as of:
         figures.planar_arm(links)
+    assert len(str(of.value)) < 250
 
 
 def test_the_simulator_has_16_degrees_of_motion():
@@ -117,7 +130,7 @@ def test_the_planar_model_stays_in_its_plane(links, length):
     assert_allclose(locate(forward(tree, np.zeros(links)), effectors), [[length, 0, 0]])
 
 
-@pytest.mark.parametrize("links", [0, 4, "three"])
+@pytest.mark.parametrize("links", [0, 4, "three", True, 2.5, None, [1, 2], np.nan])
 def test_the_planar_model_has_at_most_three_links(links):
     with pytest.raises(ValueError, match="1, 2 or 3 links"):
         figures.planar_model(links)

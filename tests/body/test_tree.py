@@ -45,12 +45,23 @@ HIP, KNEE = Joint("hip"), Joint("knee", "hip", (0, -0.4, 0))
         ([Joint("a", mobility=1.5)], ValueError, "mobility of 'a' is 1.5; it goes from 0 to 1"),
         ([Joint("a", mobility=nan)], ValueError, "mobility of 'a' is nan"),
         ([Joint("a", mobility=None)], ValueError, "mobility of 'a' must be a number, not None"),
+        ([Joint("a", axis=("0", "0", "1"))], ValueError, "axis of 'a' must be three numbers"),
+        ([Joint("a", offset=(0, 1j, 0))], ValueError, "offset of 'a' must be three numbers"),
+        ([Joint("a", offset=(0, 10**400, 0))], ValueError, "offset of 'a' must be three numbers"),
+        ([Joint("a", slide="no")], ValueError, "slide of 'a' must be True or False, not 'no'"),
+        ([Joint("a", lower=True)], ValueError, "lower limit of 'a' must be a number, not True"),
+        ([Joint("a", upper=10**400)], ValueError, "upper limit of 'a' must be a number, not 1000"),
+        ([Joint("a", mobility=True)], ValueError, "mobility of 'a' must be a number, not True"),
+        ([Joint("a" * 10**6, "b")], ValueError, "aaa … aaa.* hangs from 'b'"),
+        (None, TypeError, "a tree is made of Joints, not of None"),
+        (HIP, TypeError, "a tree is made of Joints, not of Joint"),
         (["hip"], TypeError, "a tree is made of Joints, not of 'hip'"),
     ],
 )
 def test_a_bad_row_is_named(rows, error, match):
-    with pytest.raises(error, match=match):
+    with pytest.raises(error, match=match) as told:
         Tree.of(rows)
+    assert len(str(told.value)) < 300
 
 
 @pytest.mark.parametrize(
@@ -60,6 +71,15 @@ def test_a_bad_row_is_named(rows, error, match):
         ({"foot": ("kne", (0, 0, 0))}, LookupError, "no joint 'kne'; did you mean 'knee'"),
         ({"foot": ("knee", (0, 0))}, ValueError, "offset of effector 'foot' must be three"),
         ({"foot": ("knee", (0, nan, 0))}, ValueError, "offset of effector 'foot' must be three"),
+        ({"foot": (3, (0, 0, 0))}, LookupError, "no joint 3; there are 'hip', 'knee'"),
+        (
+            {"foot": ("knee", ("0", "1", "2"))},
+            ValueError,
+            "offset of effector 'foot' must be three",
+        ),
+        ({3: ("knee", (0, 0, 0))}, ValueError, "an effector needs a name, not 3"),
+        ({"": ("knee", (0, 0, 0))}, ValueError, "an effector needs a name, not ''"),
+        ([("foot", "knee")], TypeError, r"effectors are {name: \(joint, offset\)}, not \[\("),
         ({"foot": "knee"}, ValueError, r"effector 'foot' needs \(joint, offset\), not 'knee'"),
         ({"foot": None}, ValueError, r"effector 'foot' needs \(joint, offset\), not None"),
     ],
@@ -90,6 +110,16 @@ def test_the_columns():
     assert_array_equal(tree.mobility, [0.5, 1])
     assert tree.index("b") == 1
     assert tree.above(1) == [1, 0]
+
+
+def test_angles_as_a_person_reads_them():
+    tree = Tree.of([Joint("free"), Joint("wall", lower=-9, upper=9), Joint("rail", slide=True)])
+    turned = np.array([[7.0, 7.0, 7.0], [-1000.0, -8.0, -7.0], [np.pi / 2, 0.1, 0.2]])
+    wrapped = tree.wrapped(turned)
+    assert_array_equal(wrapped[:, 1:], turned[:, 1:])
+    assert (abs(wrapped[:, 0]) <= np.pi).all()
+    assert_allclose(np.exp(1j * wrapped[:, 0]), np.exp(1j * turned[:, 0]))
+    assert_allclose(wrapped[2], turned[2])
 
 
 @pytest.mark.parametrize(("lower", "upper", "rest"), [(1, 2, 1), (-2, -1, -1), (-1, 1, 0)])
