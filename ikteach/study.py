@@ -11,14 +11,17 @@ import pandas as pd
 
 from ikteach.arrays import ArrayLike, Mask
 from ikteach.body import Effectors, Tree, forward, jacobian, locate
+from ikteach.checks import count, number, numbers, shown
 from ikteach.motion import Track, reachable, track
 from ikteach.motion.experiment import reversals
-from ikteach.motion.log import Log
+from ikteach.motion.log import Log, of_run, same_targets
+from ikteach.motion.methods import Methods, methods_of
 from ikteach.motion.packages import Body, backs_reach
 from ikteach.motion.reach import Reaching, trial
-from ikteach.motion.step import numbers
-from ikteach.motion.ways import WAYS, Way, advance
-from ikteach.solvers import SOLVERS, Solver, sdls
+from ikteach.motion.step import checked
+from ikteach.motion.ways import WAYS, Way, Ways, advance
+from ikteach.names import unknown
+from ikteach.solvers import SOLVERS, sdls
 from ikteach.solvers.response import directions, factors
 
 MEASURES = ["mean", "median", "p95", "max", "jitter", "capped", "held", "smallest_sigma"]
@@ -34,13 +37,19 @@ def log(run: Track, *, can_reach: Mask | None = None) -> pd.DataFrame:
     capped          share of the frame's steps that the cap shortened, 0..1
     held            how many joints of the effector's chain a limit stopped
     jitter          ‖Δ²θ‖ of the whole body [rad]
-    smallest_sigma  smallest singular value of J [m/rad]: 0 is singular
+    smallest_sigma  smallest singular value of J, of as many as the body can have [m/rad]: 0 is
+                    singular
+
+    ValueError if the run is a batch, has no frame or a number that is not finite.
     """
-    if run.theta.ndim != 2:
+    if of_run(run).theta.ndim != 2:
         raise ValueError(f"a log is of one run, not of a batch of shape {run.theta.shape[1:-1]}")
     if can_reach is None:
         can_reach = reachable(run.tree, run.effectors, run.targets)
     frames, k = run.error.shape
+    can_reach = np.asarray(can_reach)
+    if can_reach.shape != (frames, k):
+        raise ValueError(f"can_reach needs the shape {(frames, k)}, not {can_reach.shape}")
 
     def per_frame(values: Any) -> Any:
         return np.repeat(values, k)
@@ -54,7 +63,7 @@ def log(run: Track, *, can_reach: Mask | None = None) -> pd.DataFrame:
                 list(run.effectors.names) * frames, categories=list(run.effectors.names)
             ),
             "error": run.error.ravel(),
-            "reachable": np.asarray(can_reach).ravel(),
+            "reachable": can_reach.astype(bool).ravel(),
             "capped": per_frame(run.capped),
             "held": (run.held[:, None, :] & run.effectors.carried).sum(axis=-1).ravel(),
             "jitter": per_frame(run.jitter),
@@ -67,18 +76,22 @@ def runs(
     tree: Tree,
     effectors: Effectors,
     targets: ArrayLike,
-    methods: Mapping[str, Solver] | Iterable[str] = SOLVERS,
+    methods: Methods = SOLVERS,
     *,
     max_step: Mapping[str, float | None] | ArrayLike | None = None,
     **options: Any,
 ) -> dict[str, Track]:
     """Every method on the same targets (T, k, 3) from the same start: {method: Track}.
 
-    methods   {name: solver}, or names of `SOLVERS`
-    max_step  one step cap for all [rad], or a cap for each method, such as `BUSS_CAPS`
+    methods   {name: solver}, or one or more solvers or names of `SOLVERS` (`methods_of`)
+    max_step  one step cap for all [rad], or a cap for each method, such as `BUSS_CAPS`; methods
+              that it does not name have none
     options   go to `track` and `step`, the same for all
     """
-    chosen = dict(methods) if isinstance(methods, Mapping) else {m: SOLVERS[m] for m in methods}
+    chosen = methods_of(methods)
+    if isinstance(max_step, Mapping):
+        for name in set(max_step) - set(chosen) - set(SOLVERS):  # BUSS_CAPS may name more
+            raise LookupError(unknown("method", name, chosen))
 
     def cap(name: str) -> Any:
         return max_step.get(name) if isinstance(max_step, Mapping) else max_step
@@ -93,7 +106,7 @@ def compare(
     tree: Tree,
     effectors: Effectors,
     targets: ArrayLike,
-    methods: Mapping[str, Solver] | Iterable[str] = SOLVERS,
+    methods: Methods = SOLVERS,
     **options: Any,
 ) -> pd.DataFrame:
     """The logs of every method on the same targets, one under the other. Arguments as in `runs`."""
@@ -101,15 +114,42 @@ def compare(
 
 
 def together(tracks: Mapping[str, Track]) -> pd.DataFrame:
-    """One log of several runs on the same targets; `method` is the name each has in `tracks`."""
-    if not tracks:
-        raise ValueError("there is no run to log")
-    first = next(iter(tracks.values()))
-    can_reach = reachable(first.tree, first.effectors, first.targets)
-    logs = [log(run, can_reach=can_reach).assign(method=name) for name, run in tracks.items()]
+    """One log of several runs on the same targets; `method` is the name each has in `tracks`.
+
+    ValueError if there is none, or if they do not follow the same targets at the same times.
+    """
+    can_reach: dict[tuple[int, int], Mask] = {}  # of each body once
+    logs = []
+    for name, run in zip(tracks, same_targets(tracks), strict=True):
+        body = id(run.tree), id(run.effectors)
+        if body not in can_reach:
+            can_reach[body] = reachable(run.tree, run.effectors, run.targets)
+        logs.append(log(run, can_reach=can_reach[body]).assign(method=name))
     table = pd.concat(logs, ignore_index=True)
     table["method"] = pd.Categorical(table["method"], categories=list(tracks))
     return table
+
+
+def columns_of(table: pd.DataFrame, columns: Iterable[str], numeric: bool = False) -> list[str]:
+    """Check that a table has rows and these columns, of numbers where `numeric`: their names.
+
+    `columns` may be one name alone. LookupError for one that is not there.
+    """
+    if not isinstance(table, pd.DataFrame):
+        raise TypeError(f"a table is a DataFrame, not {shown(table)}")
+    if not len(table):
+        raise ValueError("the table has no rows")
+    if isinstance(columns, str) or not isinstance(columns, Iterable):
+        columns = [columns]
+    names = list(columns)
+    if not names:
+        raise ValueError("at least one column is needed")
+    for name in names:
+        if name not in table.columns:
+            raise LookupError(unknown("column", name, map(str, table.columns)))
+        if numeric and not pd.api.types.is_numeric_dtype(table[name]):
+            raise ValueError(f"the column {shown(name)} is not made of numbers")
+    return names
 
 
 def summary(table: pd.DataFrame, by: Iterable[str] = ("method", "effector")) -> pd.DataFrame:
@@ -120,8 +160,12 @@ def summary(table: pd.DataFrame, by: Iterable[str] = ("method", "effector")) -> 
     capped                  share of capped steps
     held                    joints held at limits, on average
     smallest_sigma          the smallest met [m/rad]
+
+    LookupError if the table lacks a column, ValueError if it has no rows.
     """
-    groups = table.groupby(list(by), observed=True)
+    by = columns_of(table, by)
+    columns_of(table, ["error", "jitter", "capped", "held", "smallest_sigma"], numeric=True)
+    groups = table.groupby(by, observed=True)
     error = groups["error"]
     return pd.DataFrame(
         {
@@ -141,6 +185,11 @@ def by_phase(table: pd.DataFrame, period: float, parts: int = 24) -> pd.DataFram
     """Mean distance to target [m] in each part of the cycle: rows phase 0..1, a column for each
     method and effector. `period` is the gait's [s].
     """
+    columns_of(table, ["time", "error"], numeric=True)
+    columns_of(table, ["method", "effector"])
+    period, parts = number("period", period), count("parts", parts)
+    if not period:
+        raise ValueError("a cycle lasts longer than 0 s")
     phase = (table["time"] % period / period * parts).astype(int).clip(upper=parts - 1)
     middle = ((phase + 0.5) / parts).rename("phase")
     return table.pivot_table(
@@ -154,9 +203,10 @@ def distances(tracks: Mapping[str, Track]) -> pd.DataFrame:
 
     It takes a millisecond where `summary` of a full log takes a hundred.
     """
+    same_targets(tracks)
     rows = {
         name: {
-            **dict(zip(run.effectors.names, 100 * run.error.mean(axis=0), strict=True)),
+            **dict(zip(_beside(run.effectors), 100 * run.error.mean(axis=0), strict=True)),
             "worst": 100 * run.error.max(),
             "jitter": np.degrees(run.jitter.mean()),
             "held": run.held.sum(axis=-1).mean(),
@@ -166,8 +216,15 @@ def distances(tracks: Mapping[str, Track]) -> pd.DataFrame:
     return pd.DataFrame.from_dict(rows, orient="index").rename_axis("method")
 
 
+def _beside(effectors: Effectors) -> list[str]:
+    """Names of columns for effectors, other than those of what stands beside them."""
+    taken = "worst", "jitter", "held"
+    return [f"effector {name}" if name in taken else name for name in effectors.names]
+
+
 def timing(tracks: Mapping[str, Track]) -> pd.Series:
     """Wall time of one step of each run [s]; it belongs to this machine and this moment."""
+    same_targets(tracks)
     seconds = {name: run.seconds for name, run in tracks.items()}
     return pd.Series(seconds, name="seconds a step", dtype=float).rename_axis("method")
 
@@ -183,7 +240,7 @@ def ticks(run: Log) -> pd.DataFrame:
     capped                      whether the cap shortened the step
     held                        how many joints of the effector's chain a limit stopped
     """
-    T, m, k = run.error.shape
+    T, m, k = _session(run).error.shape
     methods, names = list(run.methods), list(run.effectors.names)
 
     def per_tick(values: Any) -> Any:
@@ -208,20 +265,26 @@ def ticks(run: Log) -> pd.DataFrame:
 
 def angles(run: Log) -> pd.DataFrame:
     """The poses of a session [rad]: a row per tick and method, a column per joint."""
-    index = pd.MultiIndex.from_product([run.tick, run.methods], names=["tick", "method"])
+    index = pd.MultiIndex.from_product([_session(run).tick, run.methods], names=["tick", "method"])
     theta = run.theta.reshape(-1, len(run.tree))
     return pd.DataFrame(theta, index=index, columns=list(run.tree.names))
 
 
 def events(run: Log) -> pd.DataFrame:
     """What was changed in a session: a row per event, in words."""
-    rows = [(e.run, e.tick, e.time, e.kind, str(e)) for e in run.events]
+    rows = [(e.run, e.tick, e.time, e.kind, str(e)) for e in _session(run).events]
     return pd.DataFrame(rows, columns=["run", "tick", "time", "kind", "words"])
+
+
+def _session(run: Log) -> Log:
+    if not isinstance(run, Log):
+        raise TypeError(f"what happened is in a Log, as `session.log()` makes, not {shown(run)}")
+    return run
 
 
 def after(run: Track, seconds: float) -> Track:
     """The run without its first seconds, in which a method finds its targets."""
-    late = run.times > seconds
+    late = of_run(run).times > number("seconds", seconds)
     if not late.any():
         raise ValueError(f"nothing of a run of {run.times[-1]:g} s is left after {seconds:g} s")
     return Track(
@@ -236,8 +299,8 @@ def variants(run: Track, labels: Iterable[Any], name: str = "variant") -> pd.Dat
 
     The columns are those of `summary`, with `reversals` [1/s] of a joint beside the jitter.
     """
-    names = list(labels)
-    if run.theta.ndim != 3 or run.theta.shape[1] != len(names):
+    names = list(labels) if isinstance(labels, Iterable) else [labels]
+    if of_run(run).theta.ndim != 3 or run.theta.shape[1] != len(names):
         raise ValueError(f"{len(names)} labels do not fit a batch of {run.theta.shape[1:-1]}")
     rows = [measures(run, (i,)) for i in range(len(names))]
     return pd.DataFrame(rows, index=pd.Index(names, name=name))
@@ -248,7 +311,7 @@ def overview(tracks: Mapping[str, Track], name: str = "method") -> pd.DataFrame:
 
     It asks nobody what can be reached, and is quick where the full `log` is not.
     """
-    rows = [measures(run, ()) for run in tracks.values()]
+    rows = [measures(run, ()) for run in same_targets(tracks)]
     return pd.DataFrame(rows, index=pd.Index(list(tracks), name=name))
 
 
@@ -260,8 +323,12 @@ def by_direction(
     σ [m/rad], asked u_iᵀe [m], N, M, γ [rad], the factor f that SDLS takes [rad/m], and the share
     of 1/σ that it leaves; no number where nothing is asked. `options` go to `sdls`.
     """
+    theta, targets = checked(tree, theta, effectors, targets)
+    if theta.ndim != 1 or targets.ndim != 2:
+        batch = theta.shape[:-1] or targets.shape[:-2]
+        raise ValueError(f"one pose and its targets are taken apart at a time, not {batch}")
     frames = forward(tree, theta)
-    e = np.ravel(np.asarray(targets) - locate(frames, effectors))
+    e = np.ravel(targets - locate(frames, effectors))
     J = jacobian(tree, frames, effectors)
     max_angle = {k: v for k, v in options.items() if k == "max_angle"}
     found, f = directions(J, e, **max_angle), factors(J, e, sdls(J, e, **options))
@@ -325,7 +392,7 @@ def reaches(cursors: ArrayLike, ways: Mapping[str, Way] = WAYS, **options: Any) 
     options        go to `motion.reach.trial`
     """
     body, rows = Body(), {}
-    for name, way in ways.items():
+    for name, way in Ways.of(ways).items():
         run = trial(body, cursors, way, **options)
         ticks = run.ticks[run.arrived]
         rows[name] = {
@@ -351,7 +418,13 @@ def follow(cursors: ArrayLike, way: Way, ticks: int | None = None, **options: An
     """
     body, places = Body(), numbers("the cursors", cursors)
     if ticks is not None:
-        places = np.broadcast_to(places, (ticks, 3))
+        if places.shape != (3,):
+            raise ValueError(f"for some ticks a cursor is x, y and z, not of shape {places.shape}")
+        places = np.broadcast_to(places, (count("ticks", ticks), 3))
+    if places.ndim != 2 or places.shape[1] != 3 or not len(places):
+        raise ValueError(
+            f"cursors have the shape (T, 3), or say how many ticks; not {places.shape}"
+        )
     theta, rows = body.tree.rest, []
     for cursor, backs in zip(places, backs_reach(body, places), strict=True):
         tick = advance(body, theta, cursor, way, backs=backs, **options)

@@ -1,14 +1,19 @@
 """Runs as tables."""
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import pandas as pd
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from metamorphic import BODY, Case
 from numpy.testing import assert_allclose, assert_array_equal
 from pandas.testing import assert_frame_equal
+from strategies import KNOWN, SEEDS
 
-from ikteach import SOLVERS, dls, figures, gait, study, track
+from ikteach import SOLVERS, Effectors, dls, figures, forward, gait, jacobian, locate, study, track
 from ikteach.motion import BUSS_CAPS, clip
 
 TREE, EFFECTORS = figures.human()
@@ -139,3 +144,66 @@ def test_wall_time_stands_apart():
     assert isinstance(timing, pd.Series)
     assert timing.to_dict() == {name: run.seconds for name, run in runs.items()}
     assert "seconds" not in study.together(runs).columns
+
+
+def test_an_arm_in_the_plane_is_singular_where_it_is_stretched():
+    tree, hand = figures.planar_arm(3)
+    theta = np.array([[0.3, 0.5, 0.7], [0.0, 1.2, 1.2], [0.0, 0.0, 0.0]])
+    s = locate(forward(tree, theta), hand)
+    run = track(tree, hand, s, "dls", theta=theta[0])
+    log = study.log(replace(run, theta=theta))
+    J = jacobian(tree, forward(tree, theta), hand)
+    assert_allclose(log["smallest_sigma"], np.linalg.svdvals(J[:, :2])[:, 1], atol=1e-12)
+    assert (log["smallest_sigma"][:2] > 0.3).all()
+    assert log["smallest_sigma"][2] < 1e-12
+    goal = np.tile([[[1.0, 1.0, 0.0]]], (60, 1, 1))
+    table = study.compare(tree, hand, goal, theta=[0.3, 0.5, 0.7])
+    assert (study.summary(table)["smallest_sigma"] > 0.1).all()
+
+
+@settings(max_examples=25)
+@given(st.one_of(KNOWN, st.just(figures.planar_arm(3))), SEEDS, st.sampled_from(list(BODY)))
+def test_the_table_moves_along_with_the_body(figure, seed, change):
+    rng = np.random.default_rng(seed)
+    tree, effectors = figure
+    theta = rng.uniform(
+        np.maximum(tree.lower, -np.pi), np.minimum(tree.upper, np.pi), (3, len(tree))
+    )
+    away = rng.choice([0.0, 2.0], (3, len(effectors), 1)) * rng.normal(size=(3, len(effectors), 3))
+    targets = locate(forward(tree, theta), effectors) + away
+    one, two, along = BODY[change](Case(tree, effectors, theta, targets), rng)
+    run = track(*one[:2], one.targets, "dls", theta=one.theta[0])
+    other = replace(
+        run, tree=two.tree, effectors=two.effectors, targets=two.targets,
+        theta=along.pose(run.theta), start=along.pose(run.start), error=along.distances(run.error),
+        held=along.marks(run.held),
+    )  # fmt: skip
+    before, after = study.log(run), study.log(other)
+    order = np.arange(before.shape[0]).reshape(3, -1)[:, along.effectors].ravel()
+    before = before.iloc[order].reset_index(drop=True)
+    assert_allclose(after["error"], along.length * before["error"], rtol=1e-9)
+    assert_array_equal(after["reachable"], before["reachable"])
+    assert_array_equal(after["held"], before["held"])
+    assert_allclose(after["jitter"], before["jitter"], atol=1e-9)
+    assert_allclose(
+        after["smallest_sigma"] / along.length, before["smallest_sigma"], rtol=1e-6, atol=1e-9
+    )
+
+
+def test_no_column_is_lost_to_an_effector_of_its_name():
+    tree, _ = figures.planar_arm(2)
+    both = Effectors.of(tree, {"worst": ("joint1", (1, 0, 0)), "held": ("joint2", (1, 0, 0))})
+    run = track(tree, both, np.ones((4, 2, 3)), "dls")
+    row = study.distances({"dls": run}).loc["dls"]
+    assert_allclose(row[["effector worst", "effector held"]], 100 * run.error.mean(axis=0))
+    assert row["worst"] == 100 * run.error.max()
+
+
+def test_reach_is_each_bodys_own():
+    """Two bodies after the same targets: the short one's reach is not taken for the long one's."""
+    goal = np.tile([[[0.0, 2.5, 0.0]]], (3, 1, 1))
+    tracks = {str(links): track(*figures.planar_arm(links), goal, "dls") for links in (2, 3)}
+    table = study.together(tracks)
+    assert table.groupby("method", observed=True)["reachable"].all().to_dict() == {
+        "2": False, "3": True,
+    }  # fmt: skip

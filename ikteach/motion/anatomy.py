@@ -1,12 +1,12 @@
 """One tick taken apart, from the error to the movement that came of it."""
 
-from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Mask
 from ikteach.body import Effectors, Tree, forward, locate
+from ikteach.motion.methods import Methods, methods_of
 from ikteach.motion.step import clamp_error, solver_of, step, whole
 from ikteach.solvers import SOLVERS, Solver, name_of
 from ikteach.solvers.response import directions, response
@@ -58,11 +58,12 @@ class Anatomy(NamedTuple):
 
 def anatomy(
     tree: Tree, theta: ArrayLike, effectors: Effectors, targets: ArrayLike, solver: Solver | str,
-    *, methods: Mapping[str, Solver] = SOLVERS, **options: Any,
+    *, methods: Methods = SOLVERS, **options: Any,
 ) -> Anatomy:  # fmt: skip
     """Take one step of `solver` apart, from one pose θ (n,) and targets (k, 3) [m].
 
-    methods  whose responses are shown beside it
+    methods  whose responses are shown beside it; if one of them has the solver's name and is
+             another, the solver is called "name, here"
     options  as in `step`, whose errors these are
     """
     done = step(tree, theta, effectors, targets, solver, **options)
@@ -75,8 +76,10 @@ def anatomy(
         e = clamp_error(e.reshape(-1, 3), given["max_error"]).ravel()
     if given["max_step"] is not None:
         capped = given["cap"](done.wanted, given["max_step"], effectors.chains)
-    chosen, function = dict(methods), solver_of(solver)
+    chosen, function = methods_of(methods), solver_of(solver)
     name = next((name for name, one in chosen.items() if one is function), name_of(function))
+    if chosen.get(name, function) is not function:
+        name += ", here"
     chosen[name] = function
     before = locate(forward(tree, theta), effectors)
     d = directions(J, e)

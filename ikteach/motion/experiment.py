@@ -1,6 +1,5 @@
 """Chapter 8. Runs made to be compared: from many poses at once, at any rate, counted fairly."""
 
-from collections.abc import Mapping
 from math import radians
 from time import perf_counter
 from typing import Any, NamedTuple
@@ -9,7 +8,12 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Index
 from ikteach.body import Effectors, Tree, forward, jacobian, locate
-from ikteach.motion.step import Cap, solver_of, step, whole
+from ikteach.body.tree import GROUND
+from ikteach.checks import count as whole_number
+from ikteach.checks import number, numbers, shown, together
+from ikteach.motion.log import of_run
+from ikteach.motion.methods import Methods, methods_of
+from ikteach.motion.step import Cap, checked, step, whole
 from ikteach.motion.track import Track
 from ikteach.solvers import SOLVERS, Solver, name_of, transpose
 
@@ -48,9 +52,12 @@ def downhill(
 
     Limits are not asked.
     """
-    theta, gains = np.asarray(theta, dtype=float), np.asarray(gains, dtype=float)[:, None]
+    (theta, goal), gains = checked(tree, theta, effectors, targets), numbers("gains", gains)
+    if theta.ndim != 1 or goal.ndim != 2 or gains.ndim != 1:
+        shapes = theta.shape, goal.shape, gains.shape
+        raise ValueError(f"theta (n,), targets (k, 3) and gains (g,) are wanted, not {shapes}")
+    gains = gains[:, None]
     frames = forward(tree, theta)
-    goal = np.asarray(targets, dtype=float)
     e = np.ravel(goal - locate(frames, effectors))
     J = jacobian(tree, frames, effectors)
     dtheta = transpose(J, e)
@@ -63,15 +70,24 @@ def downhill(
 def starts(tree: Tree, count: int, *, spread: float = 0.5, seed: int = 0) -> Array:
     """The rest pose and others at random, (count, n) [rad]; equal seeds give equal poses.
 
-    Each joint turns from rest towards one of its limits, at most by the share `spread` of the way
-    (half a turn where there is no limit).
+    Each joint turns from rest towards one of its limits, at most by the share `spread` of the way,
+    from 0 to 1. A hinge's way is half a turn at most; that of a slide without a limit is as long as
+    all links of the body.
     """
+    count, spread = whole_number("count", count, least=0), number("spread", spread)
+    if spread > 1:
+        raise ValueError(f"spread is a share of the way to the limits, from 0 to 1, not {spread}")
     rng = np.random.default_rng(seed)
-    lower = np.maximum(tree.lower, tree.rest - np.pi)
-    upper = np.minimum(tree.upper, tree.rest + np.pi)
-    way = rng.uniform(-spread, spread, size=(count, len(tree)))
-    way[:1] = 0
-    return tree.rest + np.where(way < 0, way * (tree.rest - lower), way * (upper - tree.rest))
+    links = np.linalg.norm(tree.offsets[tree.parents != GROUND], axis=-1).sum()
+    down, up = tree.rest - tree.lower, tree.upper - tree.rest
+    down, up = (
+        np.where(tree.slide, np.where(np.isinf(way), links, way), np.minimum(way, np.pi))
+        for way in (down, up)
+    )
+    share = rng.uniform(-spread, spread, size=(count, len(tree)))
+    share[:1] = 0
+    theta = tree.rest + share * np.where(share < 0, down, up)
+    return np.minimum(np.maximum(theta, tree.lower), tree.upper)
 
 
 def reversals(run: Track) -> Array:
@@ -80,6 +96,7 @@ def reversals(run: Track) -> Array:
     A reversal is a frame in which a joint turns against its turn of the frame before, by more than
     0.1° both times. A joint that swings once a second has two a second.
     """
+    of_run(run)
     before = np.broadcast_to(run.start, run.theta.shape[1:])[None]
     turn = np.diff(np.concatenate([before, run.theta]), axis=0)
     moving = abs(turn) > SMALL
@@ -95,9 +112,13 @@ def circle(
 
     `turn` is the time of one round [s]. With the arm of 3 m a quarter of this one is out of reach.
     """
-    phase = 2 * np.pi * np.asarray(times, dtype=float)[:, None] / turn
+    times, centre, turn = numbers("times", times), numbers("centre", centre), number("turn", turn)
+    radius = number("radius", radius)
+    if times.ndim != 1 or centre.shape != (3,) or not turn:
+        raise ValueError("a circle has times (T,), a centre (3,) and a turn longer than 0 s")
+    phase = 2 * np.pi * times[:, None] / turn
     way = np.stack([np.cos(phase), np.sin(phase), np.zeros_like(phase)], axis=-1)
-    return np.asarray(centre) + radius * way
+    return np.asarray(centre + radius * way)
 
 
 def iterations(
@@ -115,9 +136,9 @@ def iterations(
 
     Infinite where `most` steps are not enough. `options` go to `step`.
     """
-    goal = np.asarray(targets, dtype=float)
-    pose = np.asarray(tree.rest if theta is None else theta, dtype=float)
-    batch = np.broadcast_shapes(pose.shape[:-1], goal.shape[:-2])
+    pose, goal = checked(tree, tree.rest if theta is None else theta, effectors, targets)
+    within, most = number("within", within), whole_number("most", most, least=0)
+    batch = together("theta and targets", pose.shape[:-1], goal.shape[:-2])
     pose = np.broadcast_to(pose, (*batch, len(tree)))
     count = np.full(batch, np.inf)
     for n in range(most + 1):
@@ -156,7 +177,7 @@ def step_times(
     tree: Tree,
     effectors: Effectors,
     targets: ArrayLike,
-    methods: Mapping[str, Solver] = SOLVERS,
+    methods: Methods = SOLVERS,
     *,
     rounds: int = 15,
     **options: Any,
@@ -166,11 +187,15 @@ def step_times(
     The methods take turns, round by round, and the median of the rounds is taken, so that what
     else the machine does falls on all alike.
     """
-    seconds: dict[str, list[float]] = {name: [] for name in methods}
-    for _ in range(rounds):
-        for name, solver in methods.items():
-            pose, function, began = tree.rest, solver_of(solver), perf_counter()
-            for goal in np.asarray(targets):
-                pose = step(tree, pose, effectors, goal, function, **options).theta
-            seconds[name].append((perf_counter() - began) / len(np.asarray(targets)))
+    pose, goals = checked(tree, tree.rest, effectors, targets)
+    if goals.ndim != 3 or not len(goals):
+        raise ValueError(f"targets over time have shape (T, k, 3), not {shown(goals.shape)}")
+    named = methods_of(methods)
+    seconds: dict[str, list[float]] = {name: [] for name in named}
+    for _ in range(whole_number("rounds", rounds)):
+        for name, solver in named.items():
+            pose, began = tree.rest, perf_counter()
+            for goal in goals:
+                pose = step(tree, pose, effectors, goal, solver, **options).theta
+            seconds[name].append((perf_counter() - began) / len(goals))
     return {name: float(np.median(times)) for name, times in seconds.items()}

@@ -19,6 +19,7 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike
 from ikteach.body import Tree
+from ikteach.checks import count, number, numbers, shown, together
 from ikteach.names import unknown
 
 # A wound of the right leg, as joint: mobility. The thesis (5.2.3) wounds by weights on joints.
@@ -58,26 +59,33 @@ class Gait:
     wound: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        if not isinstance(self.name, str):
+            raise ValueError(f"the name of a gait is a text, not {shown(self.name)}")
         for name, value in vars(self).items():
             if name not in ("name", "wound") and not (isinstance(value, Real) and isfinite(value)):
-                raise ValueError(
-                    f"{name} of {self.name!r} is {value!r}; it must be a finite number"
-                )
+                of = f"{name} of {shown(self.name)}"
+                raise ValueError(f"{of} is {shown(value)}; it must be a finite number")
         if self.slowdown < 1 or self.slowdown != int(self.slowdown):
-            raise ValueError(f"slowdown counts ticks, from 1 up; it is {self.slowdown}")
+            raise ValueError(f"slowdown counts ticks, from 1 up; it is {shown(self.slowdown)}")
+        if not isinstance(self.wound, Mapping):
+            raise ValueError(f"a wound is {{joint: mobility}}, not {shown(self.wound)}")
         for joint, value in self.wound.items():
-            if not 0 <= value <= 1:
-                raise ValueError(f"the mobility of {joint!r} must be from 0 to 1, not {value}")
+            if not (isinstance(value, Real) and 0 <= value <= 1):
+                of = f"the mobility of {shown(joint)}"
+                raise ValueError(f"{of} must be from 0 to 1, not {shown(value)}")
 
     def __call__(self, T: ArrayLike) -> Array:
         """The targets at gait times T (...) [s], (..., 4, 3) [m], seen from the pelvis.
 
         Order: left foot, right foot, right hand, left hand. Source: thesis 5.1, 5.2.
         """
-        return self.at(self.speed * np.asarray(T, dtype=float))
+        return self.at(self.speed * numbers("T", T))
 
     def at(self, phase: ArrayLike) -> Array:
         """The targets where the argument of the sine is `phase` (...) [rad], (..., 4, 3) [m]."""
+        phase = numbers("the phase", phase)
+        if not np.isfinite(phase).all():
+            raise ValueError("the phase of a gait must be finite")
         swing = np.sin(phase)
         z = [self.back_z_leg, self.front_z_leg, -self.hand_z, self.hand_z]
         targets = np.empty((*swing.shape, 4, 3))
@@ -88,8 +96,8 @@ class Gait:
 
     def clock(self, frames: int, dt: float = 1 / 30) -> Array:
         """The gait time T at the end of each tick, (frames,) [s]."""
-        leaps = np.arange(1.0, frames + 1) // self.slowdown
-        return self.step_frequency * dt * self.slowdown * leaps
+        leaps = np.arange(1.0, count("frames", frames, least=0) + 1) // self.slowdown
+        return self.step_frequency * number("dt", dt) * self.slowdown * leaps
 
     @property
     def period(self) -> float:
@@ -108,7 +116,7 @@ class Gait:
 
     def advance(self, T: ArrayLike) -> Array:
         """How far the pelvis has moved forward at gait times T (...), (..., 3) [m]."""
-        T = np.asarray(T, dtype=float)
+        T = numbers("T", T)
         moved = np.zeros((*T.shape, 3))
         moved[..., 2] = self.pace * T if self.forward else 0.0
         return moved
@@ -147,4 +155,8 @@ def displayed(theta: ArrayLike, *, times: ArrayLike = 1.0, plus: ArrayLike = 0.0
     The solver never hears of it (thesis 5.1.1, 5.2.3), so that what is drawn misses targets that
     what is logged has reached. `Gait.wound` says it to the solver instead.
     """
-    return np.add(np.multiply(theta, times), plus)
+    theta, times, plus = (
+        numbers(name, value) for name, value in (("theta", theta), ("times", times), ("plus", plus))
+    )
+    together("theta, times and plus", theta.shape, times.shape, plus.shape)
+    return theta * times + plus

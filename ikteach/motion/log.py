@@ -8,6 +8,7 @@ import numpy as np
 
 from ikteach.arrays import Array, Mask
 from ikteach.body import Effectors, Tree
+from ikteach.checks import number, numbers, shown
 from ikteach.motion.track import Track
 
 
@@ -108,14 +109,21 @@ class Log:
         return cls(tree, effectors, dt, tuple(methods), **arrays, **others)
 
     @classmethod
-    def of_tracks(cls, tracks: Mapping[str, Track], *, dt: float = 1 / 30, floor: float) -> "Log":
-        """The log of runs on the same targets (`study.runs`), over a floor at that height [m]."""
-        if not tracks:
-            raise ValueError("a log needs at least one run")
-        runs = list(tracks.values())
+    def of_tracks(
+        cls, tracks: Mapping[str, Track], *, dt: float | None = None, floor: float
+    ) -> "Log":
+        """Make the log of runs on the same targets (`study.runs`).
+
+        dt     clock time of one tick [s]; if not given, the runs' own: their times, evenly spaced,
+               are the clock then. A gait that goes slower than the clock needs it
+        floor  height of the ground [m]
+        """
+        runs = same_targets(tracks)
         T, flat = len(runs[0]), np.zeros(len(runs[0]))
-        if any(run.targets.shape != runs[0].targets.shape for run in runs):
-            raise ValueError("the runs of one log must follow the same targets")
+        if runs[0].theta.ndim != 2:
+            raise ValueError(f"a log is of single runs, not of batches {runs[0].theta.shape[1:-1]}")
+        dt = _spacing(runs[0].times) if dt is None else number("dt", dt)
+        (floor,) = numbers("floor", [floor])
 
         def stacked(what: str) -> Any:
             return np.stack([getattr(run, what) for run in runs], axis=1)
@@ -156,3 +164,46 @@ class Log:
             return ""
         parts = [f"the {number} earliest {what}" for what, number in gone.items()]
         return f"The log is bounded: {' and '.join(parts)} were dropped."
+
+
+def same_targets(tracks: Mapping[str, Track]) -> list[Track]:
+    """Check that runs {name: Track} can stand in one table: at least one, on the same targets."""
+    if not isinstance(tracks, Mapping):
+        raise TypeError(f"runs are {{name: Track}}, as `study.runs` makes, not {shown(tracks)}")
+    if not tracks:
+        raise ValueError("there is no run: at least one run is needed")
+    runs = [of_run(run) for run in tracks.values()]
+    for name, run in tracks.items():
+        if not (
+            run.effectors.names == runs[0].effectors.names
+            and np.array_equal(run.targets, runs[0].targets)
+            and np.array_equal(run.times, runs[0].times)
+        ):
+            raise ValueError(
+                "the runs of one table must follow the same targets at the same times, and"
+                f" {shown(name)} does not follow those of {shown(next(iter(tracks)))}"
+            )
+    return runs
+
+
+def of_run(run: Track) -> Track:
+    """Check that this is a run, and finite."""
+    if not isinstance(run, Track):
+        raise TypeError(f"a run is a Track, as `track` makes, not {shown(run)}")
+    if not len(run):
+        raise ValueError(f"the run of {shown(run.method)} has no frame")
+    for what in ("times", "targets", "start", "theta", "error"):
+        if not np.isfinite(getattr(run, what)).all():
+            raise ValueError(f"the run of {shown(run.method)} has {what} that are not finite")
+    return run
+
+
+def _spacing(times: Array) -> float:
+    """The time of one tick [s], if ticks are evenly spaced from the first on, which ends at dt."""
+    dt = float(times[-1]) / len(times)
+    if not (dt > 0 and np.allclose(times, dt * np.arange(1, len(times) + 1), rtol=1e-6, atol=0)):
+        raise ValueError(
+            f"the runs' {len(times)} times, to {times[-1]:g} s, are no ticks of a clock that began"
+            " at 0; say how long a tick is, dt [s]"
+        )
+    return dt

@@ -16,7 +16,8 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Index, Mask, frozen
 from ikteach.body import Effectors, Tree, forward, jacobian, partials
-from ikteach.body.figures import TOGETHER, Figure, simulator
+from ikteach.body.figures import TOGETHER, simulator
+from ikteach.checks import numbers
 
 MIDDLE = 0.05  # [m]; so near the middle plane no package answers
 NONE = -1
@@ -69,8 +70,8 @@ def _degree(row: str) -> str:
 class Body:
     """The simulator's figure with what its arms are: lengths [m], rows, degrees of motion."""
 
-    def __init__(self, figure: Figure | None = None) -> None:
-        self.tree, _ = figure or simulator()
+    def __init__(self) -> None:
+        self.tree, _ = simulator()
         self.degrees = degrees(self.tree)
         self.C: Array = frozen(coupling(self.tree))
         tree, elbow = self.tree, self.tree.index("elbow.r")
@@ -107,26 +108,34 @@ def about_x(angle: ArrayLike, v: Array) -> Array:
     return np.stack(np.broadcast_arrays(x, c * y - s * z, s * y + c * z), axis=-1)
 
 
-def in_chest(body: Body, point: Array, back: ArrayLike) -> Array:
+def places(point: ArrayLike) -> Array:
+    """Check that these are points (..., 3), finite."""
+    array = numbers("a point", point)
+    if array.shape[-1:] != (3,) or not np.isfinite(array).all():
+        raise ValueError(f"points (..., 3) are x, y and z, all finite; this has {array.shape}")
+    return array
+
+
+def in_chest(body: Body, point: ArrayLike, back: ArrayLike) -> Array:
     """The point (..., 3) in the frame of the chest, with the back turned by s = `back` (...)."""
-    back = np.asarray(back, dtype=float)
-    low = about_x(-back, point - [0, body.waist, 0])
+    back = numbers("back", back)
+    low = about_x(-back, places(point) - [0, body.waist, 0])
     return about_x(-back, low - [0, body.segment, 0])
 
 
-def by_columns(body: Body, theta: Array, package: Package) -> Array:
+def by_columns(body: Body, theta: ArrayLike, package: Package) -> Array:
     """J (..., 3, 3) of a package at pose θ (..., n), from the geometric columns, J C."""
     J = jacobian(body.tree, forward(body.tree, theta), body.hands[package.side])
     return J @ body.columns(package.degrees)
 
 
-def by_differences(body: Body, theta: Array, package: Package) -> Array:
+def by_differences(body: Body, theta: ArrayLike, package: Package) -> Array:
     """J (..., 3, 3) of a package at pose θ (..., n), from central differences."""
     J = partials.by_differences(body.tree, theta, body.hands[package.side])
     return J @ body.columns(package.degrees)
 
 
-def by_hand(body: Body, theta: Array, package: Package) -> Array:
+def by_hand(body: Body, theta: ArrayLike, package: Package) -> Array:
     """J (..., 3, 3) of a package at pose θ (..., n), from partial derivatives worked out by hand.
 
     ∂r/∂a = −y,  ∂y/∂a = r,  ∂r/∂b = L₂ cos (a + b),  ∂y/∂b = L₂ sin (a + b), and for the back
@@ -135,6 +144,10 @@ def by_hand(body: Body, theta: Array, package: Package) -> Array:
         ∂Y/∂s = −u sin s − 2 h_y sin 2s − 2 h_z cos 2s
         ∂Z/∂s =  u cos s + 2 h_y cos 2s − 2 h_z sin 2s
     """
+    theta = numbers("theta", theta)
+    if theta.shape[-1:] != (len(body.tree),):
+        n = len(body.tree)
+        raise ValueError(f"{n} joints need theta of shape (..., {n}), not {theta.shape}")
     phi, a, b = np.moveaxis(theta[..., body.arm(package.side)], -1, 0)
     s, x = theta[..., body.back], 1 if package.side == "l" else -1
     sin, cos, L1, L2 = np.sin, np.cos, body.L1, body.L2
@@ -159,7 +172,7 @@ def by_hand(body: Body, theta: Array, package: Package) -> Array:
     return np.stack([about_x(2 * s, d_phi), about_x(2 * s, d_a), d_s], axis=-1)
 
 
-def arm_reaches(body: Body, side: str, point: Array, back: ArrayLike) -> Mask:
+def arm_reaches(body: Body, side: str, point: ArrayLike, back: ArrayLike) -> Mask:
     """Whether φ, a and b within their limits put the hand to point (..., 3): (...).
 
     `back` (...) is the angle s of the back. The elbow follows from the law of cosines, the rest
@@ -191,12 +204,12 @@ def back_angles(body: Body) -> Array:
     return np.linspace(body.tree.lower[body.back], body.tree.upper[body.back], SEARCH)
 
 
-def back_reaches(body: Body, side: str, point: Array) -> Mask:
+def back_reaches(body: Body, side: str, point: ArrayLike) -> Mask:
     """Whether shoulder and back put the hand to point (..., 3), the elbow being at rest: (...).
 
     The arm is then as long as it is; the back has to bring the shoulder to just that distance.
     """
-    s = back_angles(body)
+    s, point = back_angles(body), places(point)
     v = in_chest(body, point[..., None, :], s) - body.shoulder(side)
     bend = body.tree.rest[body.arm(side)[2]]
     length = np.sqrt(body.L1**2 + body.L2**2 + 2 * body.L1 * body.L2 * np.cos(bend))
@@ -206,23 +219,25 @@ def back_reaches(body: Body, side: str, point: Array) -> Mask:
     return np.asarray((passes & (turns[..., 1:] | turns[..., :-1])).any(axis=-1))
 
 
-def both_reach(body: Body, side: str, point: Array) -> Mask:
+def both_reach(body: Body, side: str, point: ArrayLike) -> Mask:
     """Whether some pose of arm and back together puts the hand to point (..., 3): (...)."""
-    return np.asarray(arm_reaches(body, side, point[..., None, :], back_angles(body)).any(axis=-1))
+    point = places(point)[..., None, :]
+    return np.asarray(arm_reaches(body, side, point, back_angles(body)).any(axis=-1))
 
 
-def backs_reach(body: Body, cursor: Array) -> Mask:
+def backs_reach(body: Body, cursor: ArrayLike) -> Mask:
     """`back_reaches` for both sides, right first: (..., 2) for cursor (..., 3)."""
     return np.stack([back_reaches(body, side, cursor) for side in "rl"], axis=-1)
 
 
-def choose(body: Body, cursor: Array, back: ArrayLike, backs: Mask | None = None) -> Index:
+def choose(body: Body, cursor: ArrayLike, back: ArrayLike, backs: Mask | None = None) -> Index:
     """The number of the package that answers to cursor (..., 3), (...); NONE (-1) where none does.
 
     An arm answers where it reaches by itself from where the back, turned by `back` (...), has put
     its shoulder; else arm and back do where they reach; in the middle nothing does. `backs` is
     `backs_reach` of the cursor where it is known already: it does not depend on the pose.
     """
+    cursor = places(cursor)
     backs = backs_reach(body, cursor) if backs is None else backs
     arms = np.stack([arm_reaches(body, side, cursor, back) for side in "rl"], axis=-1)
     x = cursor[..., 0]
@@ -231,7 +246,7 @@ def choose(body: Body, cursor: Array, back: ArrayLike, backs: Mask | None = None
     return np.where(answers.any(axis=-1), answers.argmax(axis=-1), NONE)
 
 
-def look(body: Body, cursor: Array, back: ArrayLike, eyes: float = 0.15) -> Array:
+def look(body: Body, cursor: ArrayLike, back: ArrayLike, eyes: float = 0.15) -> Array:
     """The nod (...) of the neck that turns the face to cursor (..., 3), within its limits.
 
     Trigonometry alone: the eyes are so far above the neck [m], and their line of sight, at right

@@ -8,29 +8,20 @@ for the direction of the last link, θ₁ + θ₂ + θ₃, that from the shoulde
 A general method has no need of the third wish: it shares two among all joints.
 """
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike
 from ikteach.body import forward, locate
 from ikteach.body.figures import Figure, planar_model
+from ikteach.motion.methods import Methods, methods_of
 from ikteach.motion.packages import NONE
 from ikteach.motion.reach import Reaching
 from ikteach.motion.reachable import reachable
 from ikteach.motion.step import clip, hold, step
 from ikteach.motion.ways import MAX_STEP, NEAR, PARTS, SINGULAR, Tick, figures_of
-from ikteach.names import unknown
-from ikteach.solvers import SOLVERS, Solver, cramer, independence
+from ikteach.solvers import SOLVERS, Solvers, ask, cramer, independence
 
 ROOM = np.array([[-1.3, -1.0, 0.0], [1.3, 1.3, 0.0]])  # where a cursor can be [m]
-
-
-class Methods(dict[str, Solver]):
-    """Solvers by name; an unknown name is answered with what it may have meant."""
-
-    def __missing__(self, name: str) -> Solver:
-        raise LookupError(unknown("method", name, self))
 
 
 def square(figure: Figure, theta: Array, J: Array, e: Array) -> tuple[Array, Array]:
@@ -73,14 +64,19 @@ class PlanarReach(Reaching):
     """
 
     def __init__(
-        self, links: int = 3, methods: Mapping[str, Solver] = SOLVERS, *, method: str = "dls",
+        self, links: int = 3, methods: Methods = SOLVERS, *, method: str | None = None,
         parts: int = PARTS, max_step: float | None = MAX_STEP, dt: float = 1 / 30,
         cursor: ArrayLike = (0.5, 0.6, 0.0),
     ) -> None:  # fmt: skip
         self.figure = planar_model(links)
         self.tree, self.effectors = self.figure
-        ways = Methods({"cramer": cramer, **methods} if links == 3 else methods)
-        super().__init__(ways, ROOM, method, parts, max_step, dt, cursor)
+        named = methods_of(methods)
+        if links == 3:
+            named = {"cramer": cramer} | named
+        elif "cramer" in named:
+            raise ValueError(f"Cramer's rule is for an arm of three links, not of {links}")
+        method = method or ("dls" if "dls" in named else next(iter(named)))
+        super().__init__(Solvers(named), ROOM, method, parts, max_step, dt, cursor)
 
     @property
     def within(self) -> bool:
@@ -109,7 +105,7 @@ class PlanarReach(Reaching):
             lost = packaged and not (self._aimed and independence(J) > SINGULAR)
             if lost or np.linalg.norm(e) <= NEAR:
                 return np.zeros(len(theta))
-            return self.ways[name](J, e / self.parts)
+            return ask(self.ways[name], J, e / self.parts)
 
         done = step(
             self.tree, theta, self.effectors, self.cursor[None], solve,

@@ -13,8 +13,9 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Index, Mask
 from ikteach.body import Effectors, Tree
+from ikteach.checks import count as count_of
+from ikteach.checks import number, numbers, shown
 from ikteach.motion.packages import MIDDLE, NONE, PACKAGES, Body, backs_reach, both_reach
-from ikteach.motion.step import numbers
 from ikteach.motion.ways import (
     ARRIVED,
     MAX_STEP,
@@ -25,11 +26,14 @@ from ikteach.motion.ways import (
     Way,
     Ways,
     advance,
+    checked_parts,
+    checked_way,
     hands,
     which,
 )
 
 ROOM = np.array([[-1.0, -1.0, -0.8], [1.0, 1.3, 1.2]])  # where a cursor can be [m]
+EVERYWHERE = np.array([[-np.inf] * 3, [np.inf] * 3])
 START = (-0.35, 0.25, 0.35)  # [m]; within reach of the right arm
 STILL = radians(1e-3)  # a tick that turns no joint further has come to rest
 SWAY = radians(0.2)  # a pose that comes and goes by less is at rest, too
@@ -38,12 +42,13 @@ PATIENCE = 300  # ticks before a run that goes on is said not to settle
 LOOK_EVERY = 10  # ticks
 
 
-def period(poses: Array, longest: int = LONGEST) -> Index:
+def period(poses: ArrayLike, longest: int = LONGEST) -> Index:
     """After how many ticks the poses (T, ..., n) repeat themselves at the end, (...); 0: not.
 
     The last p ≥ 2 ticks have to be the p before them, to a tenth of how far they range, and to
     range over more than `SWAY`. The smallest such p is told.
     """
+    poses = numbers("poses", poses)
     found = np.zeros(poses.shape[1:-1], dtype=np.intp)
     for p in range(min(longest, len(poses) // 2), 1, -1):
         last, before = poses[-p:], poses[-2 * p : -p]
@@ -121,7 +126,7 @@ def placed(cursor: ArrayLike, room: Array) -> Array:
     """The cursor (3,) [m], or the place nearest to it between the corners of the room (2, 3)."""
     place = numbers("the cursor", cursor)
     if place.shape != (3,) or not np.isfinite(place).all():
-        raise ValueError(f"a cursor is three finite numbers, not {cursor!r}")
+        raise ValueError(f"a cursor is three finite numbers, not {shown(cursor)}")
     return np.clip(place, *room)
 
 
@@ -148,7 +153,8 @@ class Reaching:
         max_step: float | None, dt: float, cursor: ArrayLike,
     ) -> None:  # fmt: skip
         self.ways, self.room = ways, room
-        self.parts, self.max_step, self.dt = parts, max_step, dt
+        self.parts, self.dt = checked_parts(parts), number("dt", dt)
+        self.max_step = None if max_step is None else number("max_step", max_step)
         self._start = cursor
         self.show(method)
         self.reset()
@@ -175,7 +181,7 @@ class Reaching:
 
     def move(self, by: ArrayLike) -> None:
         """Move the cursor by (3,) [m]."""
-        self.put(self.cursor + numbers("a move", by))
+        self.put(self.cursor + placed(by, EVERYWHERE))
 
     def tick(self) -> None:
         """Let one tick of the clock pass: every way goes one step on."""
@@ -222,7 +228,7 @@ class Reach(Reaching):
     ) -> None:  # fmt: skip
         self.body = Body()
         self.tree, self.neck = self.body.tree, self.body.neck
-        super().__init__(Ways(ways), ROOM, method, parts, max_step, dt, cursor)
+        super().__init__(Ways.of(ways), ROOM, method, parts, max_step, dt, cursor)
 
     @property
     def effectors(self) -> Effectors:  # type: ignore[override]
@@ -306,7 +312,10 @@ def trial(
 
     Runs that have come to rest are not followed further: they would stay.
     """
-    cursors = numbers("the cursors", cursors)
+    cursors, ticks = numbers("the cursors", cursors), count_of("ticks", ticks)
+    if cursors.shape[-1:] != (3,) or not np.isfinite(cursors).all():
+        raise ValueError(f"cursors (..., 3) are x, y and z, all finite, not {shown(cursors)}")
+    checked_way(way)
     goals = cursors.reshape(-1, 3)
     count = len(goals)
     backs = backs_reach(body, goals)
@@ -348,11 +357,11 @@ def reachable_cursors(body: Body, count: int, seed: int = 0) -> Array:
     Every one can be reached by arm and back of the side that it lies on, if not by a package.
     """
     rng, tree = np.random.default_rng(seed), body.tree
-
+    count_of("the number of cursors", count, least=0)
     found: list[Array] = []
     while sum(map(len, found)) < count:
         q = rng.uniform(tree.lower[body.rows], tree.upper[body.rows], (count, len(body.degrees)))
         side = rng.choice([-1.0, 1.0], (count, 1)) * [1.0, 0, 0]
         s = hands(body, q @ body.C.T, side)
         found.append(s[s[:, 0] * side[:, 0] >= 0])
-    return np.concatenate(found)[:count]
+    return np.concatenate([np.zeros((0, 3)), *found])[:count]

@@ -8,7 +8,7 @@ where f is a method on the joints in use, n the parts that the error is divided 
 way back to the rest pose by at most 1° a tick. A way is a method with two rules around it.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import radians
 from typing import NamedTuple
@@ -17,6 +17,9 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Index, Mask
 from ikteach.body import forward, locate
+from ikteach.checks import function, numbers, shown
+from ikteach.checks import number as a_number
+from ikteach.checks import together as batch_of
 from ikteach.motion.packages import (
     NONE,
     PACKAGES,
@@ -25,7 +28,7 @@ from ikteach.motion.packages import (
     choose,
     look,
 )
-from ikteach.motion.step import clip, hold, numbers, step
+from ikteach.motion.step import clip, hold, step
 from ikteach.names import unknown
 from ikteach.solvers import SOLVERS, Solver, cramer, determinant, independence, name_of
 
@@ -81,9 +84,24 @@ class Way:
     origin: Origin = at_rest
     rest: RestRule = null_space
 
+    def __post_init__(self) -> None:
+        for name in ("solver", "origin", "rest"):
+            function(f"the {name} of a way", getattr(self, name))
+
 
 class Ways(dict[str, Way]):
     """Ways by name; an unknown name is answered with what it may have meant."""
+
+    @classmethod
+    def of(cls, ways: Mapping[str, Way]) -> "Ways":
+        """Check that these are ways by name, at least one."""
+        if not (isinstance(ways, Mapping) and ways):
+            raise TypeError(f"ways are {{name: Way}}, at least one, not {shown(ways)}")
+        for name, way in ways.items():
+            if not (isinstance(name, str) and name.strip()):
+                raise ValueError(f"a way's name is a text, not {shown(name)}")
+            checked_way(way, name)
+        return cls(ways)
 
     def __missing__(self, name: str) -> Way:
         raise LookupError(unknown("method", name, self))
@@ -136,9 +154,9 @@ def advance(
     ValueError if a shape is wrong, a number not finite, or `parts` is below 1.
     """
     theta, cursor = _checked(body, theta, cursor)
-    if not parts >= 1:
-        raise ValueError(f"the error is divided into 1 part or more, not {parts}")
-    shape = np.broadcast_shapes(theta.shape[:-1], cursor.shape[:-1])
+    checked_way(way)
+    checked_parts(parts)
+    shape = batch_of("theta and the cursor", theta.shape[:-1], cursor.shape[:-1])
     poses = np.broadcast_to(theta, (*shape, theta.shape[-1])).reshape(-1, theta.shape[-1]).copy()
     cursors = np.broadcast_to(cursor, (*shape, 3)).reshape(-1, 3)
     known = None if backs is None else np.broadcast_to(backs, (*shape, 2)).reshape(-1, 2)
@@ -154,6 +172,20 @@ def advance(
         poses.reshape(*shape, -1), package.reshape(shape), det, independent, sigma,
         distance.reshape(shape),
     )  # fmt: skip
+
+
+def checked_parts(parts: int) -> int:
+    """Check the number of parts that the error is divided into."""
+    if not a_number("the number of parts", parts) >= 1:
+        raise ValueError(f"the error is divided into 1 part or more, not {shown(parts)}")
+    return parts
+
+
+def checked_way(way: Way, name: str = "way") -> Way:
+    """Check that this is a way."""
+    if not isinstance(way, Way):
+        raise TypeError(f"{shown(name)} must be a Way, as Way(dls) is, not {shown(way)}")
+    return way
 
 
 def which(body: Body, theta: Array, cursor: Array, way: Way, backs: Mask | None = None) -> Index:
@@ -176,7 +208,10 @@ def _reach(
 ) -> tuple[Array, Array]:  # fmt: skip
     """The new poses (b, n), and (det, independence, σ) (3, b), of figures that use one package."""
     if number == NONE:
-        return theta + homewards(body, theta) @ body.C.T, np.full((3, len(theta)), np.nan)
+        ease = EASE if max_step is None else min(EASE, a_number("max_step", max_step))
+        home = np.clip(body.tree.rest - theta, -ease, ease)
+        home[:, body.neck] = 0
+        return theta + home, np.full((3, len(theta)), np.nan)
     package = PACKAGES[number] if way.packaged else together(PACKAGES[number].side)
     used = body.columns(package.degrees)
     idle = homewards(body, theta, besides=package.degrees if way.packaged else ())

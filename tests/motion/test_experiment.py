@@ -4,9 +4,26 @@ from functools import partial
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from metamorphic import BODY, Case
 from numpy.testing import assert_allclose, assert_array_equal
+from strategies import SEEDS, bodies
 
-from ikteach import SOLVERS, dls, figures, forward, gait, locate, sdls, step, track, transpose
+from ikteach import (
+    SOLVERS,
+    Joint,
+    Tree,
+    dls,
+    figures,
+    forward,
+    gait,
+    locate,
+    sdls,
+    step,
+    track,
+    transpose,
+)
 from ikteach.motion import per_chain
 from ikteach.motion.experiment import (
     arrivals,
@@ -31,6 +48,29 @@ def test_starts_are_within_limits_and_begin_at_rest():
     assert_array_equal(poses, starts(tree, 50, spread=1.0))
     assert abs(poses - starts(tree, 50, spread=1.0, seed=1))[1:].max() > 0.1
     assert abs(starts(tree, 50, spread=0.1) - tree.rest).max() < 0.1 * np.pi
+
+
+@given(bodies(limits=True), SEEDS, st.sampled_from(list(BODY)))
+def test_starts_move_along_with_the_body(figure, seed, change):
+    targets = np.zeros((len(figure.effectors), 3))
+    rng = np.random.default_rng(seed)
+    one, two, along = BODY[change](Case(*figure, figure.tree.rest, targets), rng)
+    poses = starts(two.tree, 20, spread=1.0, seed=seed)
+    assert ((poses >= two.tree.lower) & (poses <= two.tree.upper)).all()
+    if change != "renamed and reordered":  # which joint is drawn first matters
+        assert_allclose(
+            poses, along.pose(starts(one.tree, 20, spread=1.0, seed=seed)), rtol=1e-9, atol=1e-9
+        )
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
+def test_slides_start_anywhere_in_their_travel(unit):
+    lift = Joint("lift", slide=True, lower=0, upper=20 * unit)
+    free = Joint("free", "lift", (2 * unit, 0, 0), slide=True, lower=unit)
+    poses = starts(Tree.of([lift, free]), 200, spread=1.0) / unit
+    assert poses[:, 0].max() > 19
+    assert 2.9 < poses[:, 1].max() <= 3  # as far from rest as the links are long
+    assert poses[:, 1].min() == 1
 
 
 def test_reversals_count_turns_against_the_turn_before():

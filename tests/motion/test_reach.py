@@ -282,6 +282,62 @@ def test_unfit_ticks_are_refused(theta, cursor, options, words):
         advance(BODY, theta, cursor, WAYS["dls"], **options)
 
 
+ODD = {
+    "the origin": [0, 0, 0],
+    "far away": [1e9, -1e9, 1e9],
+    "so near that it is nothing": [1e-9, -1e-9, 1e-9],
+    "in a shoulder": BODY.shoulder("r") + [0, BODY.waist + BODY.segment, 0],
+    "in a hand": locate(forward(TREE, TREE.rest), BODY.hands["l"])[0],
+    "under a straight arm": BODY.shoulder("l") + [0, BODY.waist - 0.496, 0],
+}
+
+
+@given(
+    st.sampled_from(list(WAYS)), st.sampled_from(list(ODD)), SEEDS, st.sampled_from([None, 0.003])
+)
+def test_wherever_the_cursor_is_poses_stay_within_limits(name, place, seed, max_step):
+    """Of any pose, also one whose two segments of the back are not turned alike."""
+    rng = np.random.default_rng(seed)
+    corner = np.where(rng.random(len(TREE)) < 0.5, TREE.lower, TREE.upper)
+    theta = np.stack([rng.uniform(TREE.lower, TREE.upper), corner, TREE.rest])
+    for _ in range(10):
+        tick = advance(BODY, theta, ODD[place], WAYS[name], max_step=max_step)
+        assert np.isfinite(tick.distance).all()
+        assert (tick.theta >= TREE.lower).all()
+        assert (tick.theta <= TREE.upper).all()
+        if max_step:  # also of those that go to rest; the neck just looks
+            turned = np.delete(abs(tick.theta - theta), BODY.neck, axis=-1)
+            assert turned.max() <= max_step + 1e-12
+        theta = tick.theta
+
+
+@pytest.mark.parametrize("links", [1, 2, 3])
+def test_an_arm_in_the_plane_stays_within_limits_wherever_the_cursor_is(links):
+    arm = PlanarReach(links)
+    hand = locate(forward(arm.tree, arm.tree.rest), arm.effectors)[0]
+    for cursor in [[0, 0, 0], [1e9, 1, 0], [1e-9, 0, 0], [0.5, 0, 0], [1.2, 0, 0], [0, 0, 5], hand]:
+        arm.put(cursor)
+        for _ in range(40):
+            arm.tick()
+        for one in arm.standing.values():
+            assert np.isfinite(one.tick.distance)
+            assert (one.tick.theta >= arm.tree.lower).all()
+            assert (one.tick.theta <= arm.tree.upper).all()
+
+
+def test_points_may_be_lists():
+    point, array = [0.35, 0.2, 0.3], np.array([0.35, 0.2, 0.3])
+    assert choose(BODY, point, 0) == choose(BODY, array, 0)
+    assert look(BODY, point, 0) == look(BODY, array, 0)
+    assert arm_reaches(BODY, "l", point, 0) == arm_reaches(BODY, "l", array, 0)
+    assert back_reaches(BODY, "l", point) == back_reaches(BODY, "l", array)
+    J = by_hand(BODY, TREE.rest.tolist(), PACKAGES[0])
+    assert_array_equal(J, by_hand(BODY, TREE.rest, PACKAGES[0]))
+    for wrong in ([0, 0], [0, 0, np.inf]):
+        with pytest.raises(ValueError, match="are x, y and z, all finite"):
+            choose(BODY, wrong, 0)
+
+
 # How runs end.
 
 

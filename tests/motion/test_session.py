@@ -357,3 +357,19 @@ def test_a_log_of_tracks():
     other = runs(tree, effectors, gait.walking(gait.walking.clock(3)), ["dls"])
     with pytest.raises(ValueError, match="the same targets"):
         Log.of_tracks({"one": tracks["dls"], "other": other["dls"]}, floor=0)
+
+
+def test_a_log_of_tracks_ticks_as_they_do():
+    """The clock is that of the runs' own times, unless another is given."""
+    walk = gait.walking(gait.walking.clock(6, dt=0.1))
+    fast = runs(*figures.human(), walk, ["dls"], dt=0.1)
+    log = Log.of_tracks(fast, floor=-0.88)
+    assert log.dt == pytest.approx(0.1)
+    assert_allclose(log.clock, fast["dls"].times)
+    slow = Log.of_tracks(fast, dt=0.5, floor=-0.88)
+    assert_allclose(slow.clock, 5 * slow.time)
+    for times in ([1, 2, 4, 8, 16, 32], np.arange(6), np.arange(6) + 0.5):
+        uneven = runs(*figures.human(), walk, ["dls"], times=times)
+        with pytest.raises(ValueError, match="say how long a tick is"):
+            Log.of_tracks(uneven, floor=0)
+        assert Log.of_tracks(uneven, dt=1, floor=0).dt == 1
