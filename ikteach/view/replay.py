@@ -39,7 +39,7 @@ class Sketch:
 
     def __init__(
         self, tree: Tree, effectors: Effectors, *, size: tuple[int, int] = (480, 400),
-        side: str = "three-quarter",
+        side: str | None = None,
     ) -> None:  # fmt: skip
         self._film = Film(tree, effectors, size=size, side=side)
         self.widget = Picture(alt="A figure; the line under it says what it does.")

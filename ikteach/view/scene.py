@@ -4,7 +4,6 @@ Every frame goes to the page as one message of the driver: a matrix for each thi
 """
 
 from collections.abc import Sequence
-from math import radians, tan
 from typing import Any
 
 import ipywidgets as widgets
@@ -22,15 +21,14 @@ from ikteach.view.driver import Driver, Move
 from ikteach.view.fused import Piece, fused, shifted
 from ikteach.view.overlays import MAKERS, Layer
 from ikteach.view.picture import Still
-from ikteach.view.skin import DARK, EFFECTOR_COLOURS, GREY, LIGHT, SHIRT, Part, skin_of
+from ikteach.view.skin import DARK, EFFECTOR_COLOURS, GREY, LIGHT, SHIRT, Part
 from ikteach.view.solids import node
-from ikteach.view.stage import CAMERAS, FIELD, LAYERS, SQUARE, Stage
+from ikteach.view.stage import CAMERAS, FIELD, LAYERS, Stage
 from ikteach.view.still import StillScene
 
 __all__ = ["CAMERAS", "LAYERS", "Scene"]
 
 STILL = np.eye(3, 4)
-UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0]])  # a floor turned into a wall
 
 
 class Scene:
@@ -70,10 +68,7 @@ class Scene:
         ]  # fmt: skip
 
         aspect = width / height
-        scale = max(unit, stage.spread / (aspect * tan(radians(FIELD / 2)) * 2.7))
-        self.camera = three.PerspectiveCamera(
-            fov=FIELD, aspect=aspect, near=0.05 * unit, far=40 * max(scale, 1)
-        )
+        self.camera = three.PerspectiveCamera(fov=FIELD, aspect=aspect)
         self.scene = three.Scene(
             children=[*(thing for thing, _ in self._moves), *self._names(), *solids.lights()],
             background=DARK if dark else LIGHT,
@@ -82,7 +77,7 @@ class Scene:
             scene=self.scene, camera=self.camera, antialias=False, width=width, height=height,
             controls=[three.OrbitControls(controlling=self.camera)],
         )  # fmt: skip
-        self.cameras = Cameras(self.renderer, aspect, scale)
+        self.cameras = Cameras(self.renderer, stage, aspect)
         self.look_from(stage.side)
         self.driver = Driver(self.renderer, description=stage.words)
         self.driver.on_sign = self._greet
@@ -113,7 +108,7 @@ class Scene:
             self.show(**self._last) if self._last else None
 
     def look_from(self, side: str) -> None:
-        """Put the camera to one of `CAMERAS`, or to "plane": along −z."""
+        """Put the camera to one of `CAMERAS`, or to "plane": along the normal of its plane."""
         self.cameras.look_from(side)
 
     @property
@@ -143,7 +138,7 @@ class Scene:
         at = now.targets + places
         ground, joints, marks, gaps = self._parts
         frame = self._blank.copy()
-        frame[ground] = self._ground(now.floor, advance)
+        frame[ground] = stage.ground(now.floor, advance)
         frame[joints, :, :3] = now.orientations.reshape(-1, 3, 3)
         frame[joints, :, 3] = (now.positions + places).reshape(-1, 3)
         frame[marks, :, 3] = at[: self._sets].reshape(-1, 3)
@@ -207,19 +202,12 @@ class Scene:
             rows += layer.rows
         self.driver.move(moves, rows)
 
-    def _ground(self, floor: float, advance: float) -> Array:
-        if self.stage.planar:
-            return UPRIGHT + [[0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, -0.2 * self.stage.unit]]
-        glide = -(advance % (SQUARE * self.stage.unit))
-        return STILL + [[0, 0, 0, 0], [0, 0, 0, floor], [0, 0, 0, glide]]
-
     def _body(self, f: int, ground: int, joint: int) -> Move:
         """The flesh, or rods, of figure f, moved by the rows of its ground and its joints."""
         stage = self.stage
         rows: dict[str | None, int] = {name: joint + j for j, name in enumerate(self.tree.names)}
         rows[None] = ground
-        skin = skin_of(self.tree, self.effectors, 0.03 * stage.unit)
-        parts = [self._coloured(part, f) for part in skin]
+        parts = [self._coloured(part, f) for part in stage.skin]
         pieces = flesh.pieces(parts, rows, flesh.FINE if len(stage) == 1 else flesh.PLAIN)
         return fused(pieces, opacity=0.5 if stage.overlaid and f > 0 else 1.0)
 

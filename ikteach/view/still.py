@@ -12,7 +12,7 @@ from ikteach.view.closing import close_all
 from ikteach.view.picture import Picture
 from ikteach.view.sheet import BEFORE, BEHIND, DPI, Sheet
 from ikteach.view.skin import EFFECTOR_COLOURS
-from ikteach.view.stage import LAYERS, SHOWN_AT, SQUARE, Now, Stage, side_of
+from ikteach.view.stage import LAYERS, SHOWN_AT, SQUARE, Now, Stage
 from ikteach.view.trails import MARKS, PRINTS, Prints, Trail, feet
 
 
@@ -33,12 +33,11 @@ class StillScene:
         self._widget: Picture | None = None
         self._png = b""  # of what was shown last, once somebody has asked for it
         self._size = (width / DPI, height / DPI)
-        self._skin = skin.skin_of(tree, effectors, 0.03 * self.stage.unit)
         self._on: set[str] = set()
         self._side = self.stage.side
-        count = (len(self.stage), len(effectors))
-        self._trail = Trail(count, MARKS, 0.05 * self.stage.unit)
-        self._prints = Prints((len(self.stage), len(feet(effectors))), PRINTS)
+        f, unit = len(self.stage), self.stage.unit
+        self._trail = Trail((f, len(effectors)), MARKS, 0.05 * unit)
+        self._prints = Prints((f, len(feet(effectors))), PRINTS, 1e-4 * unit)
         self._now: Now | None = None
 
     @property
@@ -83,8 +82,8 @@ class StillScene:
         self._changed()
 
     def look_from(self, side: str) -> None:
-        """Put the camera to one of `CAMERAS`, or to "plane": along −z."""
-        side_of(side)
+        """Put the camera to one of `CAMERAS`, or to "plane": along the normal of its plane."""
+        self.stage.eye(side, 1.0)
         self._side = side
         self._changed()
 
@@ -130,23 +129,20 @@ class StillScene:
 
     def _draw_floor(self, sheet: Sheet, now: Now) -> None:
         side = SQUARE * self.stage.unit
-        marks = side * np.arange(-6, 7)
-        glide = -(now.advance % side)
-        for i in marks:
-            for a, b in (
-                ([i, 0, -6 * side], [i, 0, 6 * side]),
-                ([-6 * side, 0, i], [6 * side, 0, i]),
+        ground = self.stage.ground(now.floor, now.advance)
+        for i in side * np.arange(-6, 7):
+            for ends in (
+                [[i, 0, -6 * side], [i, 0, 6 * side]],
+                [[-6 * side, 0, i], [6 * side, 0, i]],
             ):
-                ends = np.array([a, b]) + [0, now.floor, glide]
-                if self.stage.planar:
-                    ends = np.array([a, b])[:, [0, 2, 1]] - [0, 0, 0.2 * self.stage.unit]
-                sheet.line(ends, sheet.faint, 0.8, BEHIND)
+                there = ends @ ground[:, :3].T + ground[:, 3]
+                sheet.line(there, sheet.faint, 0.8, BEHIND)
 
     def _draw_figure(self, sheet: Sheet, now: Now, f: int) -> None:
         stage, unit = self.stage, self.stage.unit
         place = stage.places[f]
         opacity = 0.45 if stage.overlaid and f > 0 else 1.0
-        for part in self._skin:
+        for part in stage.skin:
             j = None if part.joint is None else stage.tree.index(part.joint)
             R = np.eye(3) if j is None else now.orientations[f, j]
             p = place if j is None else now.positions[f, j] + place
@@ -192,8 +188,9 @@ class StillScene:
         unit = self.stage.unit
         colours = (skin.RED, skin.GREEN, skin.BLUE)
         for way, letter, colour in zip(np.eye(3), "xyz", colours, strict=True):
-            sheet.line(place + np.outer([0, 0.7 * unit], way), colour, 2.5, BEFORE)
-            sheet.words(place + 0.78 * unit * way, letter, colour)
+            at = place + self.stage.base
+            sheet.line(at + np.outer([0, 0.7 * unit], way), colour, 2.5, BEFORE)
+            sheet.words(at + 0.78 * unit * way, letter, colour)
 
     def _joint_axes(self, sheet: Sheet, now: Now, f: int) -> None:
         axes = np.matvec(now.orientations[f], self.stage.tree.axes)
@@ -207,8 +204,8 @@ class StillScene:
 
     def _columns(self, sheet: Sheet, now: Now, f: int, at: Array) -> None:
         if now.columns is not None:
-            for j, column in enumerate(now.columns[f].T):
-                sheet.arrow(at, at + SHOWN_AT * column, _colour(j))
+            for j, way in enumerate(self.stage.arrows(now.columns[f])):
+                sheet.arrow(at, at + way, _colour(j))
 
     def _ellipsoid(self, sheet: Sheet, now: Now, f: int, at: Array) -> None:
         if now.axes is None or now.lengths is None:

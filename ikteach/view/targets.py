@@ -46,7 +46,7 @@ class Targets(anywidget.AnyWidget):
         stage = scene.stage
         names = stage.effectors.names
         at = np.asarray(start, dtype=float)
-        room = ROOM * stage.unit * np.array([1.0, 1.0, 0.0 if stage.planar else 1.0])
+        room = ROOM * stage.unit * stage.free
         self._model = Positions(
             names, at, at - room if low is None else low, at + room if high is None else high
         )
