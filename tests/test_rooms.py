@@ -12,9 +12,10 @@ import ikteach
 PACKAGE = Path(ikteach.__file__).parent
 MODULES = sorted(path.relative_to(PACKAGE) for path in PACKAGE.rglob("*.py"))
 
-TOOLS = {"arrays", "names"}  # what every room may use
+TOOLS = {"arrays", "checks", "names"}  # what every room may use
 BELOW = {  # what each room may import of the package
     "arrays": set(),
+    "checks": {"arrays"},
     "names": set(),
     "server": set(),
     "body": TOOLS,

@@ -68,6 +68,7 @@ PROMISES = [  # function, its promise, how to run it
         (solver, "(..., n)", lambda g, solver=solver: solver(g.J, g.e))
         for solver in solvers.SOLVERS.values()
     ),
+    (solvers.ask, "(..., n)", lambda g: solvers.ask(solvers.dls, g.J, g.e)),
     (cramer, "(..., 3)", lambda g: cramer(g.J[..., :3, 2:5], g.e[..., :3])),
     (adjugate, "(..., 3, 3)", lambda g: adjugate(g.J[..., :3, 2:5])),
     (determinant, "(...)", lambda g: determinant(g.J[..., :3, 2:5])),

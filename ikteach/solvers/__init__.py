@@ -7,10 +7,10 @@ are the same for all methods and stand in `ikteach.motion.step`.
 """
 
 from collections.abc import Callable
-from typing import Any
 
 from ikteach.arrays import Array
 from ikteach.names import unknown
+from ikteach.solvers.ask import ask, name_of
 from ikteach.solvers.cramer import adjugate, cramer, determinant, independence
 from ikteach.solvers.dls import dls, dls_following
 from ikteach.solvers.pseudoinverse import pseudoinverse
@@ -31,17 +31,13 @@ class Solvers(dict[str, Solver]):
 SOLVERS = Solvers(transpose=transpose, pseudoinverse=pseudoinverse, dls=dls, sdls=sdls)
 
 
-def name_of(solver: Any) -> str:
-    """The name of a solver, also of one with its options bound."""
-    return str(getattr(getattr(solver, "func", solver), "__name__", "solver"))
-
-
 __all__ = [
     "SOLVERS",
     "Ellipsoid",
     "Solver",
     "Solvers",
     "adjugate",
+    "ask",
     "conditioning",
     "cramer",
     "determinant",

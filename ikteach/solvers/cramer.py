@@ -2,35 +2,36 @@
 
 import numpy as np
 
-from ikteach.arrays import Array
+from ikteach.arrays import Array, ArrayLike
+from ikteach.checks import matrix, number, numbers, system
 
 TINY = 1e-150  # [m/rad]; a joint that moves the effector by less does not move it
 
 
-def determinant(A: Array) -> Array:
+def determinant(A: ArrayLike) -> Array:
     """det A = a · (b × c) of A (..., 3, 3) with the columns a, b, c: (...)."""
     a, b, c = columns(A)
     return np.vecdot(a, np.linalg.cross(b, c))
 
 
-def adjugate(A: Array) -> Array:
+def adjugate(A: ArrayLike) -> Array:
     """adj A (..., 3, 3), with adj(A) A = det(A) I: its rows are b × c, c × a and a × b."""
     a, b, c = columns(A)
     rows = np.linalg.cross(b, c), np.linalg.cross(c, a), np.linalg.cross(a, b)
     return np.stack(rows, axis=-2)
 
 
-def independence(J: Array) -> Array:
+def independence(J: ArrayLike) -> Array:
     """|det J| over the product of the lengths of its columns, (...), from 0 to 1.
 
     It is 1 where the three joints of J (..., 3, 3) move the effector at right angles to each
     other and 0 where the ways lie in a plane. No change of units changes it, as it would det J.
     """
-    unit, length = _unit_columns(J)
+    unit, length = _unit_columns(_square(J))
     return np.where((length > TINY).all(axis=-1), abs(determinant(unit)), 0)
 
 
-def cramer(J: Array, e: Array, *, least: float = 1e-6) -> Array:
+def cramer(J: ArrayLike, e: ArrayLike, *, least: float = 1e-6) -> Array:
     """Δθ = J⁻¹e = adj(J) e / det(J), for three joints and three coordinates.
 
     J      (..., 3, 3)  Jacobian [m/rad]
@@ -40,8 +41,7 @@ def cramer(J: Array, e: Array, *, least: float = 1e-6) -> Array:
     Returns (..., 3) [rad]. ValueError unless J has three rows and three columns.
     Source: CS 490. Its `dtheta = J*r` stands for J⁻¹r, its "nonsingular (i.e. square)" for det ≠ 0.
     """
-    if J.shape[-2:] != (3, 3):
-        raise ValueError(f"Cramer's rule here is for J of shape (..., 3, 3), not {J.shape}")
+    (J, e), least = system(_square(J), e), number("least", least)
     unit, length = _unit_columns(J)
     det = determinant(unit)
     regular = (abs(det) > least) & (length > TINY).all(axis=-1)
@@ -50,9 +50,17 @@ def cramer(J: Array, e: Array, *, least: float = 1e-6) -> Array:
     return np.where(regular[..., None], dtheta, 0)
 
 
-def columns(A: Array) -> tuple[Array, Array, Array]:
+def columns(A: ArrayLike) -> tuple[Array, Array, Array]:
     """The three columns of A (..., 3, 3), each (..., 3)."""
+    A = _square(A)
     return A[..., 0], A[..., 1], A[..., 2]
+
+
+def _square(A: ArrayLike) -> Array:
+    A = numbers("J", A)
+    if A.shape[-2:] != (3, 3):
+        raise ValueError(f"Cramer's rule here is for J of shape (..., 3, 3), not {A.shape}")
+    return matrix(A)
 
 
 def _unit_columns(J: Array) -> tuple[Array, Array]:

@@ -16,9 +16,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike
+from ikteach.checks import function, number, numbers, system
+from ikteach.solvers.ask import ask
 from ikteach.solvers.dls import dls
 from ikteach.solvers.pseudoinverse import pseudoinverse
-from ikteach.solvers.sdls import SMALLEST, Clamp, bounds, hard, sdls
+from ikteach.solvers.sdls import Clamp, bounds, hard, kept, sdls, three_rows
 from ikteach.solvers.transpose import transpose
 
 
@@ -43,50 +45,58 @@ class Directions(NamedTuple):
     gamma: Array
 
 
-def directions(J: Array, e: Array, *, max_angle: float = pi / 4) -> Directions:
+def directions(J: ArrayLike, e: ArrayLike, *, max_angle: float = pi / 4) -> Directions:
     """The singular directions of J (..., 3k, n) with the error e (..., 3k) taken apart along them.
 
     M is infinite, and γ is 0, where σ is not above SDLS's smallest: those directions it leaves out.
-    Source: thesis 4.4.5; Buss & Kim 2005.
+    ValueError as in `sdls`. Source: thesis 4.4.5; Buss & Kim 2005.
     """
+    (J, e), max_angle = system(J, e), number("max_angle", max_angle)
+    three_rows(J)
     U, sigma, Vt = np.linalg.svd(J, full_matrices=False)
-    kept = sigma > SMALLEST
-    N, M, gamma = bounds(J, U, np.where(kept, sigma, 1), Vt, max_angle)
+    used = kept(sigma)
+    N, M, gamma = bounds(J, U, np.where(used, sigma, 1), Vt, max_angle)
     alpha = np.vecmat(e, U)
-    return Directions(sigma, alpha, U, Vt, N, np.where(kept, M, np.inf), np.where(kept, gamma, 0))
+    return Directions(sigma, alpha, U, Vt, N, np.where(used, M, np.inf), np.where(used, gamma, 0))
 
 
-def filtered(sigma: Array, damping: ArrayLike = 0.0) -> Array:
+def filtered(sigma: ArrayLike, damping: ArrayLike = 0.0) -> Array:
     """f_i = σ_i / (σ_i² + λ²) for σ (..., r), the factors of DLS [rad/m]; without damping 1 / σ_i.
 
     The largest that any σ can make of it is 1 / 2λ. Zero where σ and λ are.
     """
+    sigma, damping = numbers("sigma", sigma), numbers("damping", damping)
     size = np.square(sigma) + np.square(damping)
     return np.divide(sigma, size, out=np.zeros_like(size), where=size > 0)
 
 
-def factors(J: Array, e: Array, dtheta: Array, *, least: float = 1e-9) -> Array:
+def factors(J: ArrayLike, e: ArrayLike, dtheta: ArrayLike, *, least: float = 1e-9) -> Array:
     """f_i (..., r) [rad/m] of any step: Δθ = Σ f_i (u_iᵀe) v_i, for Δθ (..., n).
 
     The pseudoinverse has 1/σ_i, DLS σ_i / (σ_i² + λ²), the transpose α σ_i. Not a number where the
     error has no part along u_i, at most `least` of its length: there is nothing to answer.
     """
+    (J, e), dtheta, least = system(J, e), numbers("dtheta", dtheta), number("least", least)
+    if dtheta.shape[-1:] != J.shape[-1:]:
+        n = J.shape[-1]
+        raise ValueError(f"a J of {n} columns needs dtheta of shape (..., {n}), not {dtheta.shape}")
     U, _, Vt = np.linalg.svd(J, full_matrices=False)
     alpha = np.vecmat(e, U)
     asked = abs(alpha) > least * np.linalg.norm(e, axis=-1, keepdims=True)
     return np.divide(np.matvec(Vt, dtheta), alpha, out=np.full_like(alpha, np.nan), where=asked)
 
 
-def response(solver: Callable[..., Array], J: Array, e: Array) -> Array:
+def response(solver: Callable[..., Array], J: ArrayLike, e: ArrayLike) -> Array:
     """f (r,) [rad/m] of a method: what it makes of each singular direction of J for this e.
 
     By the formula for the four methods, also with options bound by `partial`; for any other by
     `factors` of its answer, and 0 where the error has no part.
     """
+    J, e = system(J, e)
     plain, options = (solver.func, solver.keywords) if isinstance(solver, partial) else (solver, {})
     if plain in RESPONSES and not getattr(solver, "args", ()):
         return RESPONSES[plain](J, e, **options)
-    return np.nan_to_num(factors(J, e, solver(J, e), least=1e-12))
+    return np.nan_to_num(factors(J, e, ask(solver, J, e), least=1e-12))
 
 
 def of_transpose(J: Array, e: Array, *, gain: float = 1.0) -> Array:
@@ -96,25 +106,26 @@ def of_transpose(J: Array, e: Array, *, gain: float = 1.0) -> Array:
     pull = (s * d.alpha) ** 2
     down = float(np.sum(pull * s**2))
     a = float(np.sum(pull)) / down if down > 0 else 0.0
-    return gain * a * s / max(d.sigma[0], 1e-300)
+    return number("gain", gain) * a * s / max(d.sigma[0], 1e-300)
 
 
 def of_pseudoinverse(J: Array, e: Array, *, cutoff: float = 0.01) -> Array:
     """f_i = 1/σ_i, and 0 for the directions weaker than cutoff · σ_max."""
     sigma = directions(J, e).sigma
-    kept = sigma > max(1e-150, sigma[0] * max(cutoff, np.finfo(float).eps))
-    return filtered(np.where(kept, sigma, 0))
+    strong = sigma > max(1e-150, sigma[0] * max(number("cutoff", cutoff), np.finfo(float).eps))
+    return filtered(np.where(strong, sigma, 0))
 
 
 def of_dls(J: Array, e: Array, *, damping: float = 0.1) -> Array:
     """f_i = σ_i / (σ_i² + λ²). A λ that is lost in rounding is left to `dls` to raise."""
-    return filtered(directions(J, e).sigma, damping)
+    return filtered(directions(J, e).sigma, number("damping", damping))
 
 
 def of_sdls(J: Array, e: Array, *, max_angle: float = pi / 4, clamp: Clamp = hard) -> Array:
     """f_i = c c_i / σ_i, where c_i shortens φ_i to its own bound γ_i, and c all of Δθ to γ_max."""
     d = directions(J, e, max_angle=max_angle)
-    inverse = filtered(np.where(d.sigma > SMALLEST, d.sigma, 0))
+    function("clamp", clamp)
+    inverse = filtered(np.where(kept(d.sigma), d.sigma, 0))
     phi = (inverse * d.alpha)[:, None] * d.Vt
     shares = _share(clamp(phi, d.gamma), phi)
     dtheta = shares @ phi

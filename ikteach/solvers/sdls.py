@@ -5,9 +5,13 @@ from math import pi
 
 import numpy as np
 
-from ikteach.arrays import Array, ArrayLike
+from ikteach.arrays import Array, ArrayLike, Mask
+from ikteach.checks import function, number, system
 
-SMALLEST = 1e-10  # [m/rad]; directions with a σ not above it are left out, as in Buss's code
+# Directions with a σ not above this share of the strongest are left out. Buss's code has 1e-10
+# without a share, in his lengths.
+SMALLEST = 1e-10
+NONE = 1e-150  # [m/rad]; a motion this small is none
 
 TINY = 1e-200  # keeps 0 / 0 away where a step is zero
 
@@ -29,7 +33,7 @@ def _peak(phi: Array) -> Array:
     return np.maximum.reduce(abs(phi), axis=-1, initial=TINY)
 
 
-def sdls(J: Array, e: Array, *, max_angle: float = pi / 4, clamp: Clamp = hard) -> Array:
+def sdls(J: ArrayLike, e: ArrayLike, *, max_angle: float = pi / 4, clamp: Clamp = hard) -> Array:
     """Δθ = clamp(Σ φ_i, γ_max), with φ_i = clamp(σ_i⁻¹ (u_iᵀe) v_i, γ_i).
 
     The bound γ_i = min(1, N_i / M_i) γ_max is small where a turn of the joints along v_i moves the
@@ -40,13 +44,14 @@ def sdls(J: Array, e: Array, *, max_angle: float = pi / 4, clamp: Clamp = hard) 
     max_angle  γ_max [rad]; the thesis prints 4/π, very probably for π/4
     clamp      `hard` as in the paper and the thesis, or `soft` as in Buss's code
     Returns (..., n) [rad]. Not unique where singular values repeat.
-    ValueError unless J has three rows an effector.
+    ValueError unless J has three rows per effector, if shapes do not fit or a number is none.
     Source: thesis 4.4.5; Buss & Kim 2005, J. Graphics Tools 10(3):37.
     """
-    if J.shape[-2] % 3:
-        raise ValueError(f"sdls needs three rows an effector, not {J.shape[-2]} rows")
+    (J, e), max_angle = system(J, e), number("max_angle", max_angle)
+    function("clamp", clamp)
+    three_rows(J)
     U, sigma, Vt = np.linalg.svd(J, full_matrices=False)
-    sigma = np.where(sigma > SMALLEST, sigma, np.inf)  # left out: u_iᵀe / σ_i is then 0
+    sigma = np.where(kept(sigma), sigma, np.inf)  # left out: u_iᵀe / σ_i is then 0
     _, _, gamma = bounds(J, U, sigma, Vt, max_angle)
     phi = clamp((np.vecmat(e, U) / sigma)[..., None] * Vt, gamma)  # (..., r, n), a row a direction
     dtheta = np.add.reduce(phi, axis=-2)
@@ -54,6 +59,17 @@ def sdls(J: Array, e: Array, *, max_angle: float = pi / 4, clamp: Clamp = hard) 
     if not np.count_nonzero(over):
         return dtheta
     return np.where(over[..., None], clamp(dtheta, max_angle), dtheta)
+
+
+def kept(sigma: Array) -> Mask:
+    """Whether SDLS uses each direction, by its σ (..., r)."""
+    return sigma > np.maximum(NONE, SMALLEST * sigma[..., :1])
+
+
+def three_rows(J: Array) -> None:
+    """Refuse a J (..., m, n) that has not three rows per effector."""
+    if J.shape[-2] % 3:
+        raise ValueError(f"sdls needs three rows per effector, not {J.shape[-2]} rows")
 
 
 def bounds(

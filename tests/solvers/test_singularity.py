@@ -28,14 +28,15 @@ def test_the_ellipsoid_is_where_unit_steps_go(figure, shape, seed):
 def test_manipulability_is_the_root_of_the_determinant():
     J = np.random.default_rng(0).normal(size=(5, 3, 7))
     assert_allclose(manipulability(J), np.sqrt(np.linalg.det(J @ J.mT)))
-    assert manipulability(J.mT).max() == 0  # 3 joints cannot move 7 ways
+    sigma = np.linalg.svdvals(J)
+    assert_allclose(manipulability(J.mT), sigma.prod(axis=-1))  # 3 joints move 3 ways of 7
 
 
 def test_a_stretched_arm_is_singular():
     tree, effectors = figures.planar_arm(2)
     J = jacobian(tree, forward(tree, [[0, 0], [0, 0.5]]), effectors)[:, :2]
     assert_allclose(manipulability(J), [0, np.sin(0.5)], atol=1e-15)
-    assert conditioning(J)[0] > 1e15
+    assert conditioning(J)[0] == np.inf
     assert_allclose(conditioning(np.eye(3)), 1)
     assert conditioning(np.zeros((3, 2))) == np.inf
     assert conditioning(np.diag([1.0, 0])) == np.inf

@@ -1,0 +1,102 @@
+"""What is refused at the doors: one sentence each, the culprit's name and what is allowed."""
+
+from collections.abc import Callable
+from numbers import Real
+from typing import Any
+
+import numpy as np
+
+from ikteach.arrays import Array, ArrayLike, finite
+
+FLOAT = np.dtype(float)
+LONG = 80  # letters of a value that a sentence shows
+
+
+def numbers(name: str, values: ArrayLike) -> Array:
+    """Make an array of floats of anything that is made of real numbers; ValueError names it."""
+    if type(values) is np.ndarray and values.dtype is FLOAT:  # the common case costs nothing
+        return values
+    try:
+        array = np.asarray(values)
+        real = array.dtype.kind in "biuf" or (array.dtype.kind == "O" and _all_real(array))
+        if real and not np.ma.is_masked(values):
+            return array.astype(float, copy=False)
+    except (TypeError, ValueError, OverflowError, RecursionError):  # of numpy: ragged, too large …
+        pass
+    raise ValueError(f"{name} must be made of numbers, not {shown(values)}")
+
+
+def number(name: str, value: Any) -> float:
+    """Make a float of an option that is one number, 0 or more; ValueError names it."""
+    if type(value) is float and 0 <= value < np.inf:
+        return value
+    if not isinstance(value, bool | np.bool_):  # a switch is no number
+        try:
+            one = numbers(name, value)
+        except ValueError:  # it has a sentence of its own
+            one = np.zeros(0)
+        if one.ndim == 0 and 0 <= one < np.inf:  # NaN is neither
+            return float(one)
+    one_of_many = "one number, " if np.ndim(value) else ""
+    raise ValueError(f"{name} must be {one_of_many}0 or more, and finite, not {shown(value)}")
+
+
+def count(name: str, value: Any, least: int = 1, most: float = np.inf) -> int:
+    """Make an int of a whole number such as 3, 3.0 or np.int64(3); ValueError names it."""
+    is_number = isinstance(value, Real) and not isinstance(value, bool)
+    if is_number and least <= value <= most and value % 1 == 0:  # of infinity that is NaN
+        return int(value)
+    allowed = f"{least} or more" if most == np.inf else f"from {least} to {most}"
+    raise ValueError(f"{name} must be {allowed}, and whole, not {shown(value)}")
+
+
+def function(name: str, value: Any) -> Callable[..., Any]:
+    """Give back a function; TypeError names what is none."""
+    if not callable(value):
+        raise TypeError(f"{name} must be a function, not {shown(value)}")
+    return value
+
+
+def system(J: ArrayLike, e: ArrayLike) -> tuple[Array, Array]:
+    """Make arrays of floats of J (..., m, n) and e (..., m); ValueError says what does not fit."""
+    J, e = matrix(J), numbers("e", e)
+    if e.shape[-1:] != J.shape[-2:-1]:
+        m = J.shape[-2]
+        raise ValueError(f"a J of {m} rows needs e of shape (..., {m}), not {e.shape}")
+    if e.shape[:-1] != J.shape[:-2]:
+        together("J and e", J.shape[:-2], e.shape[:-1])
+    if not finite(e):
+        raise ValueError("e is not finite")
+    return J, e
+
+
+def matrix(J: ArrayLike) -> Array:
+    """Make an array of floats of J (..., m, n) alone."""
+    J = numbers("J", J)
+    if J.ndim < 2 or not J.shape[-1] or not J.shape[-2]:
+        raise ValueError(f"J needs rows and columns, (..., m, n), not the shape {J.shape}")
+    if not finite(J):
+        raise ValueError("J is not finite")
+    return J
+
+
+def together(what: str, *batches: tuple[int, ...]) -> tuple[int, ...]:
+    """The batch that all of these fit into; ValueError says which they are."""
+    try:
+        return np.broadcast_shapes(*batches)
+    except ValueError:
+        each = " and ".join(map(str, dict.fromkeys(batches)))
+        raise ValueError(f"the batches of {what} do not fit together: {each}") from None
+
+
+def shown(value: object) -> str:
+    """A value as a sentence shows it: on one line, and not longer than that."""
+    try:
+        text = " ".join(repr(value).split())
+    except Exception:  # a stranger's __repr__ may raise anything
+        text = f"a {type(value).__name__}"
+    return text if len(text) <= LONG else f"{text[: LONG - 20]} … {text[-15:]}"
+
+
+def _all_real(array: Any) -> bool:
+    return all(isinstance(value, Real) for value in array.flat)
