@@ -36,11 +36,6 @@ class Cameras:
         return self.renderer.camera
 
     @property
-    def parts(self) -> list[three.ThreeWidget]:
-        """Both cameras and their controls."""
-        return [part for pair in self._turning.items() for part in pair]
-
-    @property
     def orthographic(self) -> bool:
         """Whether the projection is parallel; may be set."""
         return self.current is self.parallel

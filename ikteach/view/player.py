@@ -24,10 +24,10 @@ class GaitPlayer(Live):
     """
 
     def __init__(
-        self, methods: Mapping[str, Solver] = SOLVERS, *, slot: str = "gait", **options: Any
+        self, methods: Mapping[str, Solver] = SOLVERS, *, slot: str | None = "gait", **options: Any
     ) -> None:
         session = Session(methods=methods, **options)
-        scene = Scene(session.tree, session.effectors)
+        scene = Scene(session.tree, session.effectors, slot=None)
         super().__init__(session, scene, slot, Strips(session))
         self._table = widgets.HTML()
         self.controls = Controls(list(methods), session)

@@ -29,7 +29,7 @@ class SceneBench(Bench):
         show: Callable[..., Shown],
         controls: Mapping[str, Any],
         *,
-        slot: str,
+        slot: str | None,
         panel: Sequence[widgets.Widget] | None = None,
     ) -> None:
         self.scene = scene
@@ -50,12 +50,6 @@ class SceneBench(Bench):
         if self.scene.driver.description != self.words:
             self.scene.driver.description = self.words
 
-    def close(self) -> None:
-        """Free all that the page and the kernel hold of it."""
-        if getattr(self, "comm", None) is not None and self.scene.renderer.comm is not None:
-            self.scene.close()
-        super().close()
-
     def _seen(self, new: bool) -> None:
         if new:  # a page that has just opened knows no pose
             self._after(None)
@@ -72,7 +66,7 @@ class Poser(SceneBench):
     (`figures.TOGETHER`) have one slider.
     """
 
-    def __init__(self, figure: Figure, *, slot: str = "poser") -> None:
+    def __init__(self, figure: Figure, *, slot: str | None = "poser") -> None:
         self.figure = figure
         self._lead = {b: a for a, b in TOGETHER if {a, b} <= set(figure.tree.names)}
         sliders = {
@@ -89,7 +83,7 @@ class Poser(SceneBench):
             selected_index=0,
         )
         more = self._more()
-        scene = Scene(*figure, width=460, height=480)
+        scene = Scene(*figure, width=460, height=480, slot=None)
         controls = {**more, **sliders}
         super().__init__(
             scene, self._pose, controls, slot=slot, panel=[*more.values(), panel]
@@ -135,7 +129,7 @@ class ColumnPoser(Poser):
     Half a metre on the screen is 1 m/rad.
     """
 
-    def __init__(self, figure: Figure, *, slot: str = "columns") -> None:
+    def __init__(self, figure: Figure, *, slot: str | None = "columns") -> None:
         super().__init__(figure, slot=slot)
         self.scene.switch("columns of J")
 

@@ -24,10 +24,16 @@ class Race(Live):
     Display it in a notebook. `session` holds all state; `values` is what the controls say.
     """
 
-    def __init__(self, degrees: float = 30.0, *, slot: str = "race") -> None:
+    def __init__(self, degrees: float = 30.0, *, slot: str | None = "race") -> None:
         session = Session()
         scene = Scene(
-            session.tree, session.effectors, names=list(SOLVERS), apart=1.9, width=960, height=400
+            session.tree,
+            session.effectors,
+            names=list(SOLVERS),
+            apart=1.9,
+            width=960,
+            height=400,
+            slot=None,
         )
         super().__init__(session, scene, slot, Strips(session))
         self._table = widgets.HTML()

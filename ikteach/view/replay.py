@@ -16,6 +16,7 @@ from ikteach.arrays import Array, Index
 from ikteach.body import Effectors, Tree
 from ikteach.motion.log import Log
 from ikteach.view.acting import Actor
+from ikteach.view.closing import Living
 from ikteach.view.filming import Film, Shot
 from ikteach.view.picture import Picture
 from ikteach.view.plots import LEAST, STYLES
@@ -52,20 +53,23 @@ class Sketch:
         self.widget.png = out.getvalue()
 
 
-class Replay(widgets.VBox):  # type: ignore[misc]
+class Replay(Living, widgets.VBox):  # type: ignore[misc]
     """A scrubber over a run: play and pause, a slider by tick, an error plot and a table.
 
     run    a `Log`: of a session (`session.log()`), or loaded from its files
     scene  what is told the poses; if there is none, a `Sketch` in this widget is
+    slot   only one of a slot lives at a time: to run a cell again closes the older one
 
     Everything is reached with the keyboard: the slider, the plot (left and right) and the rows of
     the table (up and down) all mean the same tick, `at`.
     """
 
-    def __init__(self, run: Log, scene: Shows | None = None) -> None:
+    def __init__(
+        self, run: Log, scene: Shows | None = None, *, slot: str | None = "replay"
+    ) -> None:
         if not len(run):
             raise ValueError("there is nothing to replay: no tick is in the log yet")
-        self.run, self.at = run, 0
+        self.run, self.at, self.slot = run, 0, slot
         self._sketch = Sketch(run.tree, run.effectors) if scene is None else None
         self.scene: Any = self._sketch or scene
         self._wanted = 0
@@ -105,15 +109,10 @@ class Replay(widgets.VBox):  # type: ignore[misc]
             self._wanted = tick
             self._act(self._arrive)
 
-    def close(self) -> None:
-        """Stop playing, and free the widgets."""
+    def end(self) -> None:
+        """Stop playing."""
         if self._task is not None:
             self._task.cancel()
-        if getattr(self, "comm", None) is None:
-            return
-        for one in (self.playing, self.slider, *self.children):
-            one.close()
-        super().close()
 
     def _arrive(self) -> None:
         if self.at != self._wanted:

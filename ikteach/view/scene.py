@@ -16,7 +16,7 @@ from ikteach.body.rotation import sticks
 from ikteach.names import unknown
 from ikteach.view import flesh, shapes, solids
 from ikteach.view.cameras import Cameras
-from ikteach.view.closing import close_all
+from ikteach.view.closing import Living, close_all
 from ikteach.view.driver import Driver, Move
 from ikteach.view.fused import Piece, fused, shifted
 from ikteach.view.overlays import MAKERS, Layer
@@ -31,13 +31,15 @@ __all__ = ["CAMERAS", "LAYERS", "Scene"]
 STILL = np.eye(3, 4)
 
 
-class Scene:
+class Scene(Living):
     """One or several figures with k targets each; a `stage.View`. `widget` is what to display.
 
     names    one figure for each, with its name over its head (a lone figure needs none)
     apart    how far they stand from each other [m]; 0 lays them over each other, in which case
              they share the targets, and all but the first can be seen through
     dark     light on dark, or dark on light
+    slot     only one of a slot lives at a time: to run a cell again closes the older one. Name it
+             for a second scene in a notebook
 
     Left targets are balls, right ones boxes, so that colour is not the only sign; a grey rod joins
     each effector to its target. A figure in a plane stands before a wall of squares instead of on
@@ -47,7 +49,9 @@ class Scene:
     def __init__(
         self, tree: Tree, effectors: Effectors, *, names: Sequence[str] = ("",),
         apart: float | None = None, width: int = 540, height: int = 480, dark: bool = False,
+        slot: str | None = "scene",
     ) -> None:  # fmt: skip
+        self.slot = slot
         self.tree, self.effectors = tree, effectors
         self.stage = stage = Stage(tree, effectors, names, apart)
         unit, f, n, k = stage.unit, len(names), len(tree), len(effectors)
@@ -164,7 +168,7 @@ class Scene:
         """What was shown last as a picture, which needs no kernel to be seen."""
         picture = StillScene(
             self.tree, self.effectors, names=self.stage.names, apart=self.stage.apart,
-            dark=self._dark, width=self.renderer.width, height=self.renderer.height,
+            dark=self._dark, width=self.renderer.width, height=self.renderer.height, slot=None,
         )  # fmt: skip
         try:
             for name in self._on:
@@ -174,10 +178,6 @@ class Scene:
             return Still(picture.png, self.driver.description or picture.alt)
         finally:
             picture.close()
-
-    def close(self) -> None:
-        """Free what the page and the kernel hold of this scene, and of what is mounted in it."""
-        close_all(self.widget, *self.cameras.parts)
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
         """The live widget, and beside it a still for places without a kernel."""

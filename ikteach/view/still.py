@@ -8,7 +8,7 @@ from ikteach.arrays import Array, ArrayLike
 from ikteach.body import Effectors, Frames, Tree
 from ikteach.names import unknown
 from ikteach.view import skin
-from ikteach.view.closing import close_all
+from ikteach.view.closing import Living
 from ikteach.view.picture import Picture
 from ikteach.view.sheet import BEFORE, BEHIND, DPI, Sheet
 from ikteach.view.skin import EFFECTOR_COLOURS
@@ -16,7 +16,7 @@ from ikteach.view.stage import LAYERS, SHOWN_AT, SQUARE, Now, Stage
 from ikteach.view.trails import MARKS, PRINTS, Prints, Trail, feet
 
 
-class StillScene:
+class StillScene(Living):
     """One or several figures with k targets each, drawn by matplotlib; a `stage.View`.
 
     It takes what `scene.Scene` takes. `widget` is a picture with words for those who cannot see
@@ -26,7 +26,9 @@ class StillScene:
     def __init__(
         self, tree: Tree, effectors: Effectors, *, names: Sequence[str] = ("",),
         apart: float | None = None, width: int = 540, height: int = 480, dark: bool = False,
+        slot: str | None = "still",
     ) -> None:  # fmt: skip
+        self.slot = slot
         self.tree, self.effectors = tree, effectors
         self.stage = Stage(tree, effectors, names, apart)
         self._dark = dark
@@ -108,8 +110,9 @@ class StillScene:
 
     def close(self) -> None:
         """Free the picture."""
+        super().close()
         if self._widget is not None:
-            close_all(self._widget)
+            self._widget.close()
 
     def _repr_mimebundle_(self, **kwargs: object) -> dict[str, object]:
         return {"image/png": self.png, "text/plain": self.alt}

@@ -14,6 +14,7 @@ import traitlets
 
 from ikteach.motion.log import Log
 from ikteach.motion.session import Session
+from ikteach.view.closing import Living
 from ikteach.view.skin import EFFECTOR_COLOURS
 
 EVERY = 3  # ticks from one message to the next: 10 a second at 30 ticks a second
@@ -22,7 +23,7 @@ DASHES: tuple[list[int], ...] = ([], [7, 3], [2, 3], [9, 3, 2, 3], [5, 5], [1, 2
 DISTANCE, JITTER = [1e-4, 3.0], [1e-3, 100.0]  # [m] and [degrees], the ranges of the axes
 
 
-class Strips(anywidget.AnyWidget):
+class Strips(Living, anywidget.AnyWidget):
     """Three plots over the last seconds, on logarithmic axes.
 
     The distance of each effector of the shown method to its target, the mean distance of each

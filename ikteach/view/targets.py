@@ -10,6 +10,7 @@ import traitlets
 
 from ikteach.arrays import Array, ArrayLike
 from ikteach.view.acting import in_words
+from ikteach.view.closing import Living
 from ikteach.view.handles import Handles
 from ikteach.view.positions import Positions
 from ikteach.view.scene import Scene
@@ -20,12 +21,13 @@ HERE = Path(__file__).parent
 ROOM = 1.5  # [m] how far a target of a human may go from where it starts, each way
 
 
-class Targets(anywidget.AnyWidget):
+class Targets(Living, anywidget.AnyWidget):
     """A panel for the targets of a scene, and handles in it if it is a live one.
 
     scene      what shows them; it is not told to, that is the business of `on_change`
     start      where the targets are at first, (k, 3) [m]
     low, high  ranges [m], one number or (k, 3); None: so far as `ROOM` from the start
+    slot       only one of a slot lives at a time: to run a cell again closes the older one
 
     `positions` (k, 3) is where they are, however they were moved: dragged, by keys, by sliders, by
     number boxes, by `move`.
@@ -41,8 +43,9 @@ class Targets(anywidget.AnyWidget):
 
     def __init__(
         self, scene: View, start: ArrayLike, *, low: ArrayLike | None = None,
-        high: ArrayLike | None = None,
+        high: ArrayLike | None = None, slot: str | None = "targets",
     ) -> None:  # fmt: skip
+        self.slot = slot
         stage = scene.stage
         names = stage.effectors.names
         at = np.asarray(start, dtype=float)
@@ -86,13 +89,6 @@ class Targets(anywidget.AnyWidget):
         """Call tell(index, position (3,)) after each move; may be used as a decorator."""
         self._model.on_change(tell)
         return tell
-
-    def close(self) -> None:
-        """Free what the page and the kernel hold of it."""
-        if self.handles is not None:
-            self.handles.close()
-        self.layout.close()
-        super().close()
 
     def _agree(self, index: int, position: Array) -> None:
         self.values = self._model.now.tolist()
