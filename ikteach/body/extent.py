@@ -1,10 +1,11 @@
 """How large a body is, and where: one ball that holds all its poses."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
-from ikteach.arrays import Array
+from ikteach.arrays import Array, frozen
 from ikteach.body.tree import Effectors, Tree
 
 ROUNDS = 1000  # of the search for the smallest ball: its radius is within a thousandth then
@@ -20,6 +21,7 @@ class Extent(NamedTuple):
     radius: float
 
 
+@lru_cache(maxsize=32)
 def extent(tree: Tree, effectors: Effectors) -> Extent:
     """Enclose whatever joints and effectors can come to, travel of slides included.
 
@@ -87,4 +89,4 @@ def _smallest(c: Array, r: Array) -> Extent:
         way = away[farthest] / distance[farthest]
         centre = centre + (away[farthest] + r[farthest] * way) / i
     radius = float((np.linalg.norm(c - centre, axis=-1) + r).max())
-    return Extent(centre, radius or 1.0)
+    return Extent(frozen(centre), radius or 1.0)

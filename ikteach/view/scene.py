@@ -219,12 +219,18 @@ class Scene(Living):
             for f, name in enumerate(names)
             if name
             for label in solids.labels(
-                name, self._colour(f), 0.13 * stage.unit, [stage.places[f] + stage.name_at(f)]
+                brief(name), self._colour(f), 0.13 * stage.unit,
+                [stage.places[f] + stage.name_at(f)],
             )
-        ]
+        ]  # fmt: skip
 
     def _colour(self, f: int) -> str:
         return SHIRT if len(self.stage) == 1 else EFFECTOR_COLOURS[f % len(EFFECTOR_COLOURS)]
 
     def _coloured(self, part: Part, f: int) -> Part:
         return part._replace(colour=self._colour(f)) if part.colour == SHIRT else part
+
+
+def brief(name: str, letters: int = 16) -> str:
+    """A name as it fits over a head."""
+    return name if len(name) <= letters else f"{name[: letters - 1]}…"

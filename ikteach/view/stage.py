@@ -203,11 +203,15 @@ class Stage:
     @property
     def words(self) -> str:
         """What can be seen, in words."""
-        what = "human" if self.human else "planar figure" if self.planar else "figure"
         named = [name for name in self.names if name]
-        who = f"{len(self)} {what}s" if len(self) > 1 else f"A {what}"
-        who += f" ({', '.join(named)})" if named else ""
+        who = self.crowd + (f" ({', '.join(named)})" if named else "")
         return f"{who} with targets for {', '.join(self.effectors.names)}."
+
+    @property
+    def crowd(self) -> str:
+        """How many figures of what kind there are, in words."""
+        what = "human" if self.human else "planar figure" if self.planar else "figure"
+        return f"{len(self)} {what}s" if len(self) > 1 else f"A {what}"
 
     def name_at(self, f: int) -> Array:
         """Where the name of figure f is, from its place: over its head, or in a list beside it."""

@@ -9,6 +9,7 @@ from ikteach.body import Effectors, Frames, Tree
 from ikteach.names import unknown
 from ikteach.view import skin
 from ikteach.view.closing import Living
+from ikteach.view.lengths import Lengths
 from ikteach.view.picture import Picture
 from ikteach.view.sheet import BEFORE, BEHIND, DPI, Sheet
 from ikteach.view.skin import EFFECTOR_COLOURS
@@ -224,11 +225,12 @@ class StillScene(Living):
             sheet.circle(centre + place, inner, skin.ORANGE, "--")
 
     def _words(self, now: Now) -> str:
-        far = 100 * np.linalg.norm(now.targets - now.effectors, axis=-1)
+        far = np.linalg.norm(now.targets - now.effectors, axis=-1)
+        length = Lengths.of(self.tree, self.effectors)
         rows = []
         for name, row in zip(self.stage.names, far, strict=True):
             pairs = zip(self.effectors.names, row, strict=True)
-            distances = ", ".join(f"{effector} {d:.1f} cm" for effector, d in pairs)
+            distances = ", ".join(f"{effector} {length(d)}" for effector, d in pairs)
             rows.append(f"{name + ': ' if name else ''}{distances}")
         figure = "human" if self.stage.human else "figure"
         layers = "".join(f", {layer}" for layer, on in self.layers.items() if on)

@@ -12,6 +12,7 @@ from ikteach.arrays import Array, ArrayLike
 from ikteach.view.acting import in_words
 from ikteach.view.closing import Living
 from ikteach.view.handles import Handles
+from ikteach.view.lengths import Lengths, digits_of, round_step
 from ikteach.view.positions import Positions
 from ikteach.view.scene import Scene
 from ikteach.view.solids import effector_colour
@@ -40,6 +41,10 @@ class Targets(Living, anywidget.AnyWidget):
     high: Any = traitlets.List().tag(sync=True)
     values: Any = traitlets.List().tag(sync=True)
     alert = traitlets.Unicode().tag(sync=True)
+    unit = traitlets.Unicode("m").tag(sync=True)  # in which a person reads and writes
+    metres = traitlets.Float(1.0).tag(sync=True)  # of one such unit
+    step = traitlets.Float(0.01).tag(sync=True)  # of sliders and boxes, in that unit
+    digits = traitlets.Int(2).tag(sync=True)
 
     def __init__(
         self, scene: View, start: ArrayLike, *, low: ArrayLike | None = None,
@@ -50,9 +55,12 @@ class Targets(Living, anywidget.AnyWidget):
         names = stage.effectors.names
         at = np.asarray(start, dtype=float)
         room = ROOM * stage.unit * stage.free
+        unit = Lengths.of_places(stage.extent.radius)
+        step = round_step(2 * ROOM * stage.unit / unit.metres)
         self._model = Positions(
-            names, at, at - room if low is None else low, at + room if high is None else high
-        )
+            names, at, at - room if low is None else low, at + room if high is None else high,
+            unit=unit, step=step * unit.metres,
+        )  # fmt: skip
         self.handles = Handles(scene, self._model) if isinstance(scene, Scene) else None
         super().__init__(
             names=list(names),
@@ -60,6 +68,10 @@ class Targets(Living, anywidget.AnyWidget):
             low=self._model.low.tolist(),
             high=self._model.high.tolist(),
             values=self._model.now.tolist(),
+            unit=unit.name,
+            metres=unit.metres,
+            step=step,
+            digits=digits_of(step),
         )
         self._model.on_change(self._agree)
         self.on_msg(self._hear)

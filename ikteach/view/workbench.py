@@ -17,7 +17,7 @@ from ikteach.motion.mix import Mix
 from ikteach.motion.reachable import annulus
 from ikteach.motion.session import Session
 from ikteach.motion.step import clip, hold, ignore, per_chain, whole
-from ikteach.solvers import SOLVERS, ellipsoid
+from ikteach.solvers import SOLVERS, Solver, ellipsoid
 from ikteach.solvers.sdls import hard, soft
 from ikteach.view import panels
 from ikteach.view.closing import close_all
@@ -54,7 +54,8 @@ class Workbench(Live):
         self, *, folder: str | Path = ".", slot: str | None = "workbench", **options: Any
     ) -> None:
         mix = Mix.of(Session().effectors, dict.fromkeys(Session().effectors.names, "dls"))
-        session = Session(methods={**SOLVERS, "mix": mix}, **options)
+        methods: dict[str, Solver] = {**SOLVERS, "mix": mix}
+        session = Session(methods=methods, **options)
         self._times = np.ones(len(session.tree))
         self._plus = np.zeros(len(session.tree))
         self._chosen = 0  # the effector whose J is drawn
@@ -323,7 +324,7 @@ class Workbench(Live):
         a, e = radians(get["azimuth"]), radians(get["elevation"])
         # To move the figure right is to look at a point left of it.
         sideways, upwards = np.array([cos(a), 0, -sin(a)]), np.array([0.0, 1, 0])
-        middle = -get["right"] * sideways - get["up"] * upwards
+        middle = self.scene.stage.extent.centre - get["right"] * sideways - get["up"] * upwards
         away = np.array([sin(a) * cos(e), sin(e), cos(a) * cos(e)]) * self._distance / get["zoom"]
         self.scene.cameras.put(middle + away, middle)
 
