@@ -204,7 +204,7 @@ class Dial(NamedTuple):
         each, unit = (lengths.metres, f" {lengths.name}") if slide else (np.radians(1), "°")
         lower, rest, upper = (float(x[j]) / each for x in (tree.lower, tree.rest, tree.upper))
         far = size / each if slide else 180.0
-        if not slide and upper - lower > 3600:  # limits in name only
+        if not slide and 3600 < upper - lower < np.inf:  # limits in name only
             lower, upper = -np.inf, np.inf
         if np.isinf(lower) and np.isinf(upper):
             middle = rest if slide else 0.0
