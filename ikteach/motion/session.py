@@ -18,6 +18,7 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, frozen
 from ikteach.body import Frames, forward, locate
+from ikteach.body.extent import extent
 from ikteach.body.figures import Figure, human
 from ikteach.motion.gait import LIMBS, Gait, stature, walking
 from ikteach.motion.log import Event, Log, Moment
@@ -27,10 +28,11 @@ from ikteach.motion.path import Path, swinging
 from ikteach.motion.step import checked, numbers, solver_of, step
 from ikteach.motion.track import Track
 from ikteach.names import unknown
-from ikteach.solvers import SOLVERS, Solver, name_of
+from ikteach.solvers import SOLVERS, Solver, dls, name_of
 
 ONE_MOVE = 0.7  # [s] a slider that is moved again so soon is still making the same change
 LONG = 400  # letters of an error that the log keeps
+DAMPING = inspect.signature(dls).parameters["damping"].default  # for a human [m/rad]
 # What `adjust` may set: the options of `step`, but for the mobility, which is the gait's wound, and
 # the frames, which are those of the poses.
 OPTIONS = [
@@ -47,7 +49,8 @@ class Session:
     gait      what the targets do, a `Gait` or a `Path`; change it with `change(...)` or put another
               in its place. If none is given, what can walk walks, and any other figure's targets
               go where its own joints would swing them
-    methods   {name: solver}, and whatever `methods_of` takes; put another to a name with `use`
+    methods   {name: solver}, and whatever `methods_of` takes; put another to a name with `use`.
+              If none are given, those of `SOLVERS`, with the λ of dls in proportion to the body
     method    the one that is shown; if none is given, dls or the first
     by_hand   True where the targets stay where `aim` has put them, and the gait rests
     dt        clock time of one tick [s]
@@ -64,7 +67,7 @@ class Session:
         self,
         figure: Figure | None = None,
         gait: Gait | Path | None = None,
-        methods: Methods = SOLVERS,
+        methods: Methods | None = None,
         *,
         method: str | None = None,
         dt: float = 1 / 30,
@@ -73,7 +76,7 @@ class Session:
         **options: Any,
     ) -> None:
         self.tree, self.effectors = figure or human()
-        self.methods = methods_of(methods)
+        self.methods = self._solvers() if methods is None else methods_of(methods)
         self.dt = dt
         self.options = options
         self.caps: Mapping[str, float | None] = {}
@@ -323,6 +326,19 @@ class Session:
         return list(islice(reversed(self.record), last))[::-1]
 
     # Behind the changes.
+
+    def _solvers(self) -> dict[str, Solver]:
+        """Give the four methods, damped in proportion to the body: λ is a length per radian."""
+        known = stature(self.tree, self.effectors)
+        size = known[0] if known else self._size()
+        if size == 1:
+            return dict(SOLVERS)
+        damped = partial(dls, damping=DAMPING * size)
+        return {**SOLVERS, "dls": damped}
+
+    def _size(self) -> float:
+        """How far the body reaches, against a human."""
+        return extent(self.tree, self.effectors).radius / extent(*human()).radius
 
     def _usual(self) -> Gait | Path:
         """What the targets of this figure do where nobody says what."""

@@ -8,7 +8,7 @@ import ipywidgets as widgets
 from ikteach.motion.gait import MOTIONS, WOUND, Gait
 from ikteach.motion.path import Path
 from ikteach.motion.session import Session
-from ikteach.view.scene import CAMERAS
+from ikteach.view.stage import sides_of
 
 # parameter of the gait: label, lowest, highest, step, unit
 SLIDERS = {
@@ -50,7 +50,8 @@ class Controls:
         self.forward = widgets.Checkbox(
             value=gait.forward, description="moving forward", indent=False
         )
-        self.view = widgets.Dropdown(options=list(CAMERAS), description="View")
+        sides = sides_of(session.tree, session.effectors)
+        self.view = widgets.Dropdown(options=sides, description="View")
         self.reset = widgets.Button(description="Reset")
         self.step = widgets.Button(description="Step")
         self.sliders = {

@@ -9,7 +9,6 @@ from ikteach.motion.gait import MOTIONS, WOUND, Gait
 from ikteach.motion.methods import Methods
 from ikteach.motion.path import Path
 from ikteach.motion.session import Session
-from ikteach.solvers import SOLVERS
 from ikteach.study import distances
 from ikteach.view.controls import Controls
 from ikteach.view.lengths import Lengths
@@ -21,7 +20,8 @@ from ikteach.view.strips import SECONDS, Strips
 class GaitPlayer(Live):
     """A figure that follows the targets of a gait, by every method at once; one of them is shown.
 
-    methods  {name: solver}, or solvers and their names in a list, or one of them alone
+    methods  {name: solver}, or solvers and their names in a list, or one of them alone; the four
+             of the course if none are given
     options  go to `Session`: the figure (a human if none is given), its gait or path, and so on
 
     Display it in a notebook. `session` holds all state and may be changed from cells while the
@@ -29,7 +29,7 @@ class GaitPlayer(Live):
     """
 
     def __init__(
-        self, methods: Methods = SOLVERS, *, slot: str | None = "gait", **options: Any
+        self, methods: Methods | None = None, *, slot: str | None = "gait", **options: Any
     ) -> None:
         session = Session(methods=methods, **options)
         scene = Scene(session.tree, session.effectors, slot=None)

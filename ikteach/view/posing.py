@@ -224,7 +224,7 @@ class Dial(NamedTuple):
         """A slider for it, with its ends in its label."""
         return widgets.FloatSlider(
             value=self.value, min=self.low, max=self.high, step=self.step,
-            description=f"{name} ({self.low:.5g}…{self.high:.5g}{self.unit})",
+            description=f"{name} ({self.low:.4g}…{self.high:.4g}{self.unit})",
             style={"description_width": "175px"}, readout_format=f".{digits_of(self.step)}f",
             layout=widgets.Layout(width="auto"),
         )  # fmt: skip

@@ -11,7 +11,6 @@ from ikteach.motion import BUSS_CAPS
 from ikteach.motion.gait import stature
 from ikteach.motion.methods import Methods
 from ikteach.motion.session import Session
-from ikteach.solvers import SOLVERS
 from ikteach.view.bench import choice, slider
 from ikteach.view.controls import motions
 from ikteach.view.lengths import Lengths
@@ -26,7 +25,8 @@ EQUAL, OWN = "equal caps", "each author's caps"
 class Race(Live):
     """Figures that follow the same targets at the same moment, each by its own method.
 
-    methods  {name: solver}, or solvers and their names in a list, or one of them alone
+    methods  {name: solver}, or solvers and their names in a list, or one of them alone; the four
+             of the course if none are given
     degrees  the step cap of all [° a step]
     options  go to `Session`: the figure (a human if none is given), its gait or path, and so on
 
@@ -34,7 +34,7 @@ class Race(Live):
     """
 
     def __init__(
-        self, methods: Methods = SOLVERS, *, degrees: float = 30.0, slot: str | None = "race",
+        self, methods: Methods | None = None, *, degrees: float = 30.0, slot: str | None = "race",
         **options: Any,
     ) -> None:  # fmt: skip
         session = Session(methods=methods, **options)

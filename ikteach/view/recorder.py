@@ -14,7 +14,7 @@ from ikteach.motion.session import Session
 from ikteach.view.acting import Actor
 from ikteach.view.closing import Living
 from ikteach.view.filming import Film, Shot, shot
-from ikteach.view.scene import CAMERAS
+from ikteach.view.stage import sides_of
 from ikteach.view.status import Status
 
 NOW, PAST = "from now on", "what has been"
@@ -52,7 +52,8 @@ class Recorder(Living, widgets.VBox):  # type: ignore[misc]
         self.rate = widgets.FloatText(value=30, description="Frames a s", style=LABEL)
         self.seconds = widgets.FloatText(value=5, description="Seconds", style=LABEL)
         self.which = widgets.Dropdown(options=[NOW, PAST], description="Film", style=LABEL)
-        self.side = widgets.Dropdown(options=list(CAMERAS), description="View", style=LABEL)
+        sides = sides_of(session.tree, session.effectors)
+        self.side = widgets.Dropdown(options=sides, description="View", style=LABEL)
         self.replace = widgets.Checkbox(
             value=False, description="replace a file of that name", indent=False
         )

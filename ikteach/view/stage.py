@@ -138,6 +138,7 @@ class Stage:
         rest = forward(tree, tree.rest)
         points = np.concatenate([rest.positions, locate(rest, effectors)])
         self.floor = float(points[:, 1].min()) - 0.06 * self.unit
+        self._stands = bool(points[:, 1].mean() > self.extent.centre[1])
 
     def __len__(self) -> int:
         return len(self.names)
@@ -214,8 +215,11 @@ class Stage:
         return f"{len(self)} {what}s" if len(self) > 1 else f"A {what}"
 
     def name_at(self, f: int) -> Array:
-        """Where the name of figure f is, from its place: over its head, or in a list beside it."""
-        x, y = (-0.75, 0.65 - 0.16 * f) if self.overlaid else (0.0, 0.8 if self.human else 1.1)
+        """Where the name of figure f is, from its place: over or under it, or in a list beside it."""
+        if self.overlaid:
+            x, y = -0.75, 0.65 - 0.16 * f
+        else:  # where the figure is not, at rest
+            x, y = 0.0, 0.8 if self.human else -1.1 if self._stands else 1.1
         return self.extent.centre + self.unit * np.array([x, y, 0.0])
 
     def now(
@@ -275,6 +279,11 @@ def picture_axes(back: Array) -> Array:
     x = np.cross(up, z)
     x /= np.linalg.norm(x)
     return np.stack([x, np.cross(z, x), z], axis=-1)
+
+
+def sides_of(tree: Tree, effectors: Effectors) -> list[str]:
+    """The named sides from which a body can be looked at, the usual one first."""
+    return [*CAMERAS] if plane_of(tree, effectors) is None else [PLANE, *CAMERAS]
 
 
 def plane_of(tree: Tree, effectors: Effectors) -> Array | None:
