@@ -108,8 +108,9 @@ class Gait:
         def at(phase: float) -> Array:
             return np.asarray(pelvis + unit * self.at(phase)[order])
 
+        ours = order == [*range(len(LIMBS))] and unit == 1 and not np.any(pelvis)
         ground = min(self.back_y_leg, self.front_y_leg)
-        return Course(at, float(pelvis[1] + unit * ground), unit)
+        return Course(self.at if ours else at, float(pelvis[1] + unit * ground), unit)
 
     def clock(self, frames: int, dt: float = 1 / 30) -> Array:
         """The gait time T at the end of each tick, (frames,) [s]."""

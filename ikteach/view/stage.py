@@ -215,7 +215,7 @@ class Stage:
         return f"{len(self)} {what}s" if len(self) > 1 else f"A {what}"
 
     def name_at(self, f: int) -> Array:
-        """Where the name of figure f is, from its place: over or under it, or in a list beside it."""
+        """Where the name of figure f is, from its place: over it, under it, or in a list."""
         if self.overlaid:
             x, y = -0.75, 0.65 - 0.16 * f
         else:  # where the figure is not, at rest
