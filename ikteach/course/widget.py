@@ -3,13 +3,15 @@
 import html
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import anywidget
 import traitlets
 
+from ikteach.view.closing import Living, occupant
 
-class Question(anywidget.AnyWidget):
+
+class Question(Living, anywidget.AnyWidget):
     """A question with choices, a number or an order to put things in (see question.js).
 
     `on_answer` is called with each answer that is sent and gives the words to show under it. A
@@ -17,7 +19,6 @@ class Question(anywidget.AnyWidget):
     """
 
     _esm = Path(__file__).parent / "question.js"
-    _living: ClassVar[dict[str, "Question"]] = {}
 
     kind = traitlets.Enum(["choice", "number", "ranking"], "choice").tag(sync=True)
     question = traitlets.Unicode().tag(sync=True)
@@ -31,11 +32,8 @@ class Question(anywidget.AnyWidget):
     status = traitlets.Unicode().tag(sync=True)
 
     def __init__(self, key: str, on_answer: Callable[[Any], str], **traits: Any) -> None:
-        if key in self._living:
-            self._living.pop(key).close()
+        self.slot, self._on_answer = f"question {key}", on_answer
         super().__init__(**traits)
-        self._key, self._on_answer = key, on_answer
-        self._living[key] = self
         self.observe(self._sent, "asked")
 
     def _sent(self, _: Any) -> None:
@@ -45,7 +43,8 @@ class Question(anywidget.AnyWidget):
     @classmethod
     def living(cls, key: str) -> "Question | None":
         """The question of this key that is on the page, if there is one."""
-        return cls._living.get(key)
+        shown = occupant(f"question {key}")
+        return shown if isinstance(shown, cls) else None
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
         """The widget, and beside it the question to read in places without a kernel."""

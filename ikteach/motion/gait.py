@@ -10,7 +10,7 @@ The thesis does not print its constants. These are chosen so that its own statem
 of the four can. `tests/motion/test_gait.py` proves it by bounded least squares.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from math import isfinite, pi
 from numbers import Real
@@ -18,12 +18,16 @@ from numbers import Real
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike
-from ikteach.body import Tree
+from ikteach.body import Effectors, Tree
+from ikteach.body.figures import human, simulator
 from ikteach.checks import count, number, numbers, shown, together
+from ikteach.motion.path import Course
 from ikteach.names import unknown
 
 # A wound of the right leg, as joint: mobility. The thesis (5.2.3) wounds by weights on joints.
 WOUND: Mapping[str, float] = {"hip.bend.r": 0.5, "knee.r": 0.1, "ankle.r": 0.1}
+LIMBS = ("foot.l", "foot.r", "hand.r", "hand.l")  # whose targets a gait moves, in its order
+ALIKE = 1e-3  # share of its length by which a limb may differ from a human's of another size
 
 
 @dataclass(frozen=True)
@@ -94,6 +98,27 @@ class Gait:
         targets[..., 2] = swing[..., None] * z
         return targets
 
+    def on(self, tree: Tree, effectors: Effectors) -> Course:
+        """This gait for a body, in its size and from its pelvis.
+
+        A body with the limbs of a human in other proportions is given the lengths as they are.
+        ValueError if one of its effectors is no foot and no hand.
+        """
+        if strange := [name for name in effectors.names if name not in LIMBS]:
+            raise ValueError(
+                f"{self.name!r} moves targets for {', '.join(LIMBS)}, and none for"
+                f" {shown(strange[0])}: only a figure with such limbs can walk; give others a Path"
+            )
+        order = [LIMBS.index(name) for name in effectors.names]
+        unit, pelvis = stature(tree, effectors) or (1.0, np.zeros(3))
+
+        def at(phase: float) -> Array:
+            return np.asarray(pelvis + unit * self.at(phase)[order])
+
+        ours = order == [*range(len(LIMBS))] and unit == 1 and not np.any(pelvis)
+        ground = min(self.back_y_leg, self.front_y_leg)
+        return Course(self.at if ours else at, float(pelvis[1] + unit * ground), unit)
+
     def clock(self, frames: int, dt: float = 1 / 30) -> Array:
         """The gait time T at the end of each tick, (frames,) [s]."""
         leaps = np.arange(1.0, count("frames", frames, least=0) + 1) // self.slowdown
@@ -137,6 +162,37 @@ running = Gait(
     "running", speed=9.0, back_z_leg=-0.5, front_z_leg=0.5, back_y_leg=-1.1, front_y_leg=-1.1,
     hand_z=1.0, back_y_hand=0.0, front_y_hand=0.0,
 )  # fmt: skip
+
+
+def stature(tree: Tree, effectors: Effectors) -> tuple[float, Array] | None:
+    """How large a body is against a human, and where its pelvis is (3,) [m].
+
+    None if its limbs, by the names of their ends, are not in a human's proportions.
+    """
+    for like in human(), simulator():
+        if not set(effectors.names) <= set(like.effectors.names):
+            continue
+        ours, theirs = (_limbs(*one, effectors.names) for one in ((tree, effectors), like))
+        if [len(limb) for limb in ours] != [len(limb) for limb in theirs]:
+            continue
+        a, b = (np.concatenate([limb[1:] for limb in limbs]) for limbs in (ours, theirs))
+        unit = float((a * b).sum() / (b * b).sum())
+        pelvis = [limb[0] - unit * other[0] for limb, other in zip(ours, theirs, strict=True)]
+        differ = max(abs(a - unit * b).max(), float(np.ptp(pelvis, axis=0).max()))
+        if unit > 0 and differ <= ALIKE * unit:
+            if abs(unit - 1) < 1e-9 and not np.any(pelvis):
+                return 1.0, np.zeros(3)  # a human, to the last bit
+            return unit, np.asarray(pelvis[0])
+    return None
+
+
+def _limbs(tree: Tree, effectors: Effectors, names: Iterable[str]) -> list[Array]:
+    """The links (links, 3) from the ground to each of these effectors, at θ = 0 [m]."""
+    rows = [effectors.names.index(name) for name in names]
+    return [
+        np.array([*tree.offsets[tree.above(int(effectors.joints[i]))[::-1]], effectors.offsets[i]])
+        for i in rows
+    ]
 
 
 class Motions(dict[str, Gait]):

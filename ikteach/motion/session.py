@@ -18,16 +18,21 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, frozen
 from ikteach.body import Frames, forward, locate
+from ikteach.body.extent import extent
 from ikteach.body.figures import Figure, human
-from ikteach.motion.gait import Gait, walking
+from ikteach.motion.gait import LIMBS, Gait, stature, walking
 from ikteach.motion.log import Event, Log, Moment
+from ikteach.motion.methods import Methods, methods_of
 from ikteach.motion.mix import Each, Mix
+from ikteach.motion.path import Path, swinging
 from ikteach.motion.step import checked, numbers, solver_of, step
 from ikteach.motion.track import Track
 from ikteach.names import unknown
-from ikteach.solvers import SOLVERS, Solver, name_of
+from ikteach.solvers import SOLVERS, Solver, dls, name_of
 
 ONE_MOVE = 0.7  # [s] a slider that is moved again so soon is still making the same change
+LONG = 400  # letters of an error that the log keeps
+DAMPING = inspect.signature(dls).parameters["damping"].default  # for a human [m/rad]
 # What `adjust` may set: the options of `step`, but for the mobility, which is the gait's wound, and
 # the frames, which are those of the poses.
 OPTIONS = [
@@ -40,9 +45,13 @@ OPTIONS = [
 class Session:
     """A figure that walks, by every method at once, on the same targets and the same clock.
 
-    gait      what the targets do; change it with `change(...)` or put another in its place
-    methods   {name: solver}; put another solver to a name with `use`
-    method    the one that is shown
+    figure    the human if none is given
+    gait      what the targets do, a `Gait` or a `Path`; change it with `change(...)` or put another
+              in its place. If none is given, what can walk walks, and any other figure's targets
+              go where its own joints would swing them
+    methods   {name: solver}, and whatever `methods_of` takes; put another to a name with `use`.
+              If none are given, those of `SOLVERS`, with the λ of dls in proportion to the body
+    method    the one that is shown; if none is given, dls or the first
     by_hand   True where the targets stay where `aim` has put them, and the gait rests
     dt        clock time of one tick [s]
     options   go to `step`, the same for all methods; set them with `adjust`
@@ -57,44 +66,49 @@ class Session:
     def __init__(
         self,
         figure: Figure | None = None,
-        gait: Gait = walking,
-        methods: Mapping[str, Solver] = SOLVERS,
+        gait: Gait | Path | None = None,
+        methods: Methods | None = None,
         *,
-        method: str = "dls",
+        method: str | None = None,
         dt: float = 1 / 30,
         keep: int = 3000,
         keep_events: int = 1000,
         **options: Any,
     ) -> None:
         self.tree, self.effectors = figure or human()
-        self.methods = dict(methods)
+        self.methods = self._solvers() if methods is None else methods_of(methods)
         self.dt = dt
         self.options = options
         self.caps: Mapping[str, float | None] = {}
         self.record: deque[Moment] = deque(maxlen=keep)
         self.events: deque[Event] = deque(maxlen=keep_events)
         self.runs = self.events_dropped = self.ticks = self._waited = 0
-        self._gait, self._by_hand = gait, False
+        self._gait, self._by_hand = self._usual() if gait is None else gait, False
+        self._course = self._gait.on(self.tree, self.effectors)
         self._before: deque[_Settings] = deque(maxlen=100)
         self._moved = -ONE_MOVE  # when something was last changed, by the clock on the wall
-        self.method = self._known(method)
+        self.method = self._known(
+            method or ("dls" if "dls" in self.methods else next(iter(self.methods)))
+        )
         self._begin()
 
     # What can be changed. Each change is an event, and `undo` takes it back.
 
     @property
-    def gait(self) -> Gait:
+    def gait(self) -> Gait | Path:
         """What the targets do."""
         return self._gait
 
     @gait.setter
-    def gait(self, gait: Gait) -> None:
+    def gait(self, gait: Gait | Path) -> None:
         new, old = vars(gait), vars(self._gait)
-        what = {name: value for name, value in new.items() if value != old[name]}
-        if "name" in what:
+        what = {n: value for n, value in new.items() if n not in old or value != old[n]}
+        if "name" in what or "curve" in what:
             what = {"motion": gait.name}
         if what:
-            self._change("gait", what, going_on=self._soon("gait", what), _gait=gait)
+            course = gait.on(self.tree, self.effectors)
+            same = self._soon("gait", what)
+            self._change("gait", what, going_on=same, _gait=gait, _course=course)
 
     def change(self, **parameters: Any) -> None:
         """Give the gait other parameters; TypeError or ValueError says which one cannot be."""
@@ -193,19 +207,18 @@ class Session:
 
     def tick(self) -> None:
         """Let one tick of the clock pass; every `gait.slowdown`-th, time leaps and poses follow."""
-        self.ticks += 1
         self._waited += 1
-        if self._waited < self.gait.slowdown:
-            return
-        self.time, self.phase, self.advance, self.targets = self.ahead()
-        self._waited = 0
-        try:
-            self._follow()
-        except Exception as error:
-            words = str(error)
-            if not (self.events and self.events[-1].what == {"words": words}):
-                self.note("error", words=words)
-            raise
+        if self._waited >= self.gait.slowdown:
+            try:
+                self._leap()
+            except Exception as error:  # a student's own solver or path: nothing has happened
+                self._waited -= 1
+                words = str(error)[:LONG] or type(error).__name__
+                if not (self.events and self.events[-1].what == {"words": words}):
+                    self.note("error", words=words)
+                raise
+            self._waited = 0
+        self.ticks += 1
 
     def ahead(self) -> tuple[float, float, float, Array]:
         """Time, phase, advance and targets after the next leap."""
@@ -213,20 +226,23 @@ class Session:
         if self.by_hand:
             return self.time + elapsed, self.phase, self.advance, self.targets
         phase = self.phase + self.gait.speed * elapsed
-        gone = self.gait.pace * elapsed if self.gait.forward else 0.0
-        return self.time + elapsed, phase, self.advance + gone, self.gait.at(phase)
+        gone = self._course.size * self.gait.pace * elapsed if self.gait.forward else 0.0
+        return self.time + elapsed, phase, self.advance + gone, self._course.at(phase)
 
-    def _follow(self) -> None:
+    def _leap(self) -> None:
+        """Let time leap: solve first, so that a solver that fails changes nothing."""
+        time, phase, advance, targets = self.ahead()
         options = self.options | {"max_step": self._max_steps()}
         to = step(
-            self.tree, self._poses, self.effectors, self.targets, Each(self.methods.values()),
+            self.tree, self._poses, self.effectors, targets, Each(self.methods.values()),
             mobility=self.gait.mobility(self.tree), frames=self.frames, **options,
         )  # fmt: skip
         self._stand(to.theta)
+        self.time, self.phase, self.advance, self.targets = time, phase, advance, targets
         self.dropped += len(self.record) == self.record.maxlen
         self.record.append(
             Moment(
-                self.ticks, self.time, self.phase, self.advance, self.floor,
+                self.ticks + 1, self.time, self.phase, self.advance, self.floor,
                 self._row(self.method), self.targets, to.theta, self._distances(), to.capped,
                 to.held,
             )
@@ -276,8 +292,8 @@ class Session:
 
     @property
     def floor(self) -> float:
-        """Height of the ground under the pelvis: that of the lower foot's target [m]."""
-        return min(self.gait.back_y_leg, self.gait.front_y_leg)
+        """Height of the ground [m]: of a human, that of the lower foot's target."""
+        return self._course.floor
 
     def log(self, last: int | None = None) -> Log:
         """What happened, or its last ticks, as data that no longer changes."""
@@ -311,12 +327,30 @@ class Session:
 
     # Behind the changes.
 
+    def _solvers(self) -> dict[str, Solver]:
+        """Give the four methods, damped in proportion to the body: λ is a length per radian."""
+        known = stature(self.tree, self.effectors)
+        size = known[0] if known else self._size()
+        if size == 1:
+            return dict(SOLVERS)
+        damped = partial(dls, damping=DAMPING * size)
+        return {**SOLVERS, "dls": damped}
+
+    def _size(self) -> float:
+        """How far the body reaches, against a human."""
+        return extent(self.tree, self.effectors).radius / extent(*human()).radius
+
+    def _usual(self) -> Gait | Path:
+        """What the targets of this figure do where nobody says what."""
+        walks = set(self.effectors.names) == set(LIMBS) or stature(self.tree, self.effectors)
+        return walking if walks else swinging(self.tree, self.effectors)
+
     def _begin(self) -> None:
         self.time = self.phase = self.advance = 0.0
         self.ticks = self._waited = self.dropped = 0
         self._stand(np.tile(self.tree.rest, (len(self.methods), 1)))
         if not self.by_hand:
-            self.targets = self.gait.at(0.0)
+            self.targets = self._course.at(0.0)
         self.record.clear()
 
     def _stand(self, poses: Array) -> None:
@@ -343,7 +377,7 @@ class Session:
 
     def _retarget(self) -> None:
         if not self.by_hand:
-            self.targets = self.gait.at(self.phase)
+            self.targets = self._course.at(self.phase)
 
     def _soon(self, kind: str, what: Mapping[str, Any]) -> bool:
         """Whether a change of the same things has only just been made: a slider on its way."""
@@ -375,7 +409,7 @@ class Session:
         step(self.tree, self.theta[method], self.effectors, self.targets, solver, **options)
 
 
-_STATE = ("method", "methods", "options", "caps", "targets", "_gait", "_by_hand")
+_STATE = ("method", "methods", "options", "caps", "targets", "_gait", "_course", "_by_hand")
 
 
 class _Settings(NamedTuple):

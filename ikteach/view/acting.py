@@ -3,10 +3,13 @@
 import asyncio
 from collections.abc import Callable
 
+LONG = 600  # letters of an error that a person is shown
+
 
 def in_words(error: Exception) -> str:
     """What went wrong, as the person is told."""
-    return f"That did not work: {error or type(error).__name__}"
+    words = str(error)[:LONG] or type(error).__name__
+    return f"That did not work: {words}"
 
 
 class Actor:

@@ -5,8 +5,10 @@ from pathlib import Path
 import anywidget
 import traitlets
 
+from ikteach.view.closing import Living
 
-class Ball(anywidget.AnyWidget):
+
+class Ball(Living, anywidget.AnyWidget):
     """A rotation ball: dragging it, or the arrow keys on it, turn what it stands for.
 
     azimuth    degrees to the left of the front, −180 to 180

@@ -1,7 +1,7 @@
 """A bench: sliders and buttons over a picture that answers them, for chapters 3, 5 and 6."""
 
 from collections.abc import Callable, Mapping
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, NamedTuple
 
 import ipywidgets as widgets
 import numpy as np
@@ -10,6 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ikteach.view.acting import Actor, in_words
+from ikteach.view.closing import Living
 from ikteach.view.picture import Picture
 from ikteach.view.plots import as_png
 from ikteach.view.status import Status
@@ -43,30 +44,26 @@ class Canvas:
         return as_png(np.asarray(self._canvas.buffer_rgba()))
 
 
-class Bench(widgets.VBox):  # type: ignore[misc]
+class Bench(Living, widgets.VBox):  # type: ignore[misc]
     """Controls, and a picture that `show(**values)` makes of their values whenever one moves.
 
     controls  {name: widget with a value}
     buttons   {label: what it does}; then the picture is made anew
-    slot      only one bench of a slot lives at a time: to run a cell again closes the older one
+    slot      only one of a slot lives at a time: to run a cell again closes the older one
 
     What goes wrong in `show` or in a button is told in the bench, in words, and the bench stays.
     """
-
-    _living: ClassVar[dict[str, "Bench"]] = {}
 
     def __init__(
         self,
         show: Callable[..., Shown],
         controls: Mapping[str, Any],
         *,
-        slot: str,
+        slot: str | None,
         buttons: Mapping[str, Callable[[], None]] | None = None,
     ) -> None:
-        if slot in self._living:
-            self._living.pop(slot).close()
-        self.controls = dict(controls)
-        self._show, self._slot, self._stale = show, slot, False
+        self.controls, self.slot = dict(controls), slot
+        self._show, self._stale = show, False
         self._waiting: list[Callable[[], None]] = []
         self._act = Actor()
         self.status = Status()
@@ -80,7 +77,6 @@ class Bench(widgets.VBox):  # type: ignore[misc]
         if self.buttons:
             rows.append(widgets.HBox(list(self.buttons.values())))
         super().__init__([*rows, self.status, self._picture, self._below])
-        self._living[slot] = self
         self.refresh()
 
     @property
@@ -105,17 +101,6 @@ class Bench(widgets.VBox):  # type: ignore[misc]
             return
         self.status.wrong = ""
         self._picture.png, self._picture.alt, self._below.value = png, words, below
-
-    def close(self) -> None:
-        """Free all that the page and the kernel hold of it."""
-        if self._living.get(self._slot) is self:
-            del self._living[self._slot]
-        if getattr(self, "comm", None) is None:
-            return
-        parts = [*self.controls.values(), *self.buttons.values()]
-        for widget in (*parts, self._picture, self._below, self.status):
-            widget.close()
-        super().close()
 
     def _after(self, act: Callable[[], None] | None) -> None:
         """Note what was asked for, and see to it that it is done; from any thread."""

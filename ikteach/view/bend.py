@@ -21,14 +21,14 @@ class BendBench(SceneBench):
     Under it: its singular values, and the length of the step that each method would take.
     """
 
-    def __init__(self, *, slot: str = "bend") -> None:
+    def __init__(self, *, slot: str | None = "bend") -> None:
         self.arm = planar_arm(2)
         self._chart()
         controls = {
             "bend": slider("bend of the elbow [°]", 40, -180, 180, 1),
             "way": slider("direction of the error [°]", 180, -180, 180, 5),
         }
-        scene = Scene(*self.arm, width=460, height=400)
+        scene = Scene(*self.arm, width=460, height=400, slot=None)
         super().__init__(scene, self._bend, controls, slot=slot)
         scene.switch("ellipsoid")
         scene.switch("columns of J")

@@ -7,22 +7,25 @@ import numpy as np
 import pythreejs as three
 
 from ikteach.arrays import Array, ArrayLike
-from ikteach.view.stage import FIELD, picture_axes, side_of
+from ikteach.view.stage import FIELD, Stage, picture_axes
 
 
 class Cameras:
     """A perspective and a parallel camera that look at the same thing; one of them is used.
 
     renderer  is given the camera and its OrbitControls
-    scale     how many times farther than from a human the named sides are
+    aspect    width over height of the picture
     """
 
-    def __init__(self, renderer: three.Renderer, aspect: float, scale: float) -> None:
-        self.renderer, self.scale, self._aspect = renderer, scale, aspect
-        self.centre = (0.0, 0.0, 0.0)
-        self._far = 40 * max(scale, 1)
+    def __init__(self, renderer: three.Renderer, stage: Stage, aspect: float) -> None:
+        self.renderer, self._stage, self._aspect = renderer, stage, aspect
+        # Near, far, and how close one may come, all as shares of where the named cameras are.
+        self._usual = float(np.linalg.norm(stage.eye(stage.side, aspect) - stage.extent.centre))
+        self._far = 20 * self._usual
         self.perspective: three.PerspectiveCamera = renderer.camera
+        self.perspective.near, self.perspective.far = self._usual / 60, self._far
         self._turning = {self.perspective: renderer.controls[0]}
+        self._bound(renderer.controls[0])
         self.parallel: three.OrthographicCamera | None = None
         self._tell: list[Callable[[], None]] = []
         self._watch(self.perspective)
@@ -31,11 +34,6 @@ class Cameras:
     def current(self) -> three.Camera:
         """The camera in use."""
         return self.renderer.camera
-
-    @property
-    def parts(self) -> list[three.ThreeWidget]:
-        """Both cameras and their controls."""
-        return [part for pair in self._turning.items() for part in pair]
 
     @property
     def orthographic(self) -> bool:
@@ -53,6 +51,7 @@ class Cameras:
                 quaternion=before.quaternion,
             )  # fmt: skip
             self._turning[self.parallel] = three.OrbitControls(controlling=self.parallel)
+            self._bound(self._turning[self.parallel])
             self._watch(self.parallel)
             # The scene listens to what is in it, so that a turned camera has it drawn again.
             scene = self.renderer.scene
@@ -65,7 +64,7 @@ class Cameras:
 
     def look_from(self, side: str) -> None:
         """Put the camera to one of the named sides; LookupError for an unknown one."""
-        self.put(self.scale * side_of(side) + self.centre, self.centre)
+        self.put(self._stage.eye(side, self._aspect), self._stage.extent.centre)
 
     def turn(self, azimuth: float, elevation: float, distance: float | None = None) -> None:
         """Look from so many degrees to the left of the front and above the floor."""
@@ -78,6 +77,10 @@ class Cameras:
     def on_turn(self, tell: Callable[[], None]) -> None:
         """Call tell() whenever the camera has been turned: with the mouse, by keys, by `turn`."""
         self._tell.append(tell)
+
+    def _bound(self, turning: three.OrbitControls) -> None:
+        """Let the wheel come no closer than can be drawn, and go no farther than can be seen."""
+        turning.minDistance, turning.maxDistance = self._usual / 20, 10 * self._usual
 
     def _watch(self, camera: three.Camera) -> None:
         camera.observe(lambda _: [tell() for tell in self._tell], "position")

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from math import radians
-from typing import Any, ClassVar
+from typing import Any
 
 import ipywidgets as widgets
 
@@ -11,6 +11,7 @@ from ikteach.motion import gait, per_chain, whole
 from ikteach.motion.experiment import capped
 from ikteach.solvers import Solver, pseudoinverse
 from ikteach.view.bench import slider
+from ikteach.view.closing import Living
 from ikteach.view.player import GaitPlayer
 
 
@@ -24,20 +25,18 @@ def rules(degrees: float) -> dict[str, Solver]:
     }
 
 
-class CapPlayer(widgets.VBox):  # type: ignore[misc]
+class CapPlayer(Living, widgets.VBox):  # type: ignore[misc]
     """The gait player with the pseudoinverse under three caps at once, and two sliders more.
 
     They say how large the cap is [° a step], and how far to the side the hands are to go [m].
     """
 
-    _living: ClassVar["CapPlayer | None"] = None
-
-    def __init__(self, degrees: float = 5.0, x_hand: float = 0.9) -> None:
-        if CapPlayer._living is not None:
-            CapPlayer._living.close()
-        CapPlayer._living = self
+    def __init__(
+        self, degrees: float = 5.0, x_hand: float = 0.9, *, slot: str | None = "caps"
+    ) -> None:
+        self.slot = slot
         start = replace(gait.walking, x_hand=x_hand)
-        self.player = GaitPlayer(rules(degrees), slot="caps", gait=start, method="whole step")
+        self.player = GaitPlayer(rules(degrees), slot=None, gait=start, method="whole step")
         self.player.controls.method.description = "Cap"
         self.controls = {
             "cap": slider("cap [° a step]", degrees, 0.5, 45.0, 0.5),
@@ -58,15 +57,6 @@ class CapPlayer(widgets.VBox):  # type: ignore[misc]
         """Take one tick, and report."""
         self.player.session.tick()
         self.player.report()
-
-    def close(self) -> None:
-        """Stop the loop and free the widgets."""
-        if CapPlayer._living is self:
-            CapPlayer._living = None
-        self.player.close()
-        for widget in self.controls.values():
-            widget.close()
-        super().close()
 
     def _obey(self, name: str, value: float) -> None:
         if name == "cap":  # the same names as before: a tick under way may go on

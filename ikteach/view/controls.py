@@ -5,9 +5,10 @@ from typing import Any
 
 import ipywidgets as widgets
 
-from ikteach.motion.gait import MOTIONS, Gait
+from ikteach.motion.gait import MOTIONS, WOUND, Gait
+from ikteach.motion.path import Path
 from ikteach.motion.session import Session
-from ikteach.view.scene import CAMERAS
+from ikteach.view.stage import sides_of
 
 # parameter of the gait: label, lowest, highest, step, unit
 SLIDERS = {
@@ -36,41 +37,47 @@ class Controls:
 
     def __init__(self, methods: list[str], session: Session) -> None:
         gait = session.gait
+        walks = isinstance(gait, Gait)
         self._quiet = False
         self.playing = widgets.ToggleButton(value=True, description="Pause")
         self.method = widgets.ToggleButtons(
             options=methods, value=session.method, description="Method"
         )
         self.motion = widgets.ToggleButtons(
-            options=list(MOTIONS), value=gait.name, description="Motion"
+            options=motions(session), value=gait.name, description="Motion"
         )
         self.wounded = widgets.Checkbox(value=bool(gait.wound), description="wounded", indent=False)
         self.forward = widgets.Checkbox(
             value=gait.forward, description="moving forward", indent=False
         )
-        self.view = widgets.Dropdown(options=list(CAMERAS), description="View")
+        sides = sides_of(session.tree, session.effectors)
+        self.view = widgets.Dropdown(options=sides, description="View")
         self.reset = widgets.Button(description="Reset")
         self.step = widgets.Button(description="Step")
         self.sliders = {
             name: _slider(getattr(gait, name), *spec)
             for group in SLIDERS.values()
             for name, spec in group.items()
+            if hasattr(gait, name)
         }
+        able = set(WOUND) <= set(session.tree.names)
         for one in (self.method, self.motion):
             one.style.button_width = "auto"
             one.style.description_width = "60px"
         self.view.style.description_width = "60px"
+        groups = SLIDERS if walks else {"Speed": SLIDERS["Speed"]}
         panels = widgets.Accordion(
-            [widgets.VBox([self.sliders[name] for name in group]) for group in SLIDERS.values()],
-            titles=list(SLIDERS),
+            [widgets.VBox([self.sliders[name] for name in group]) for group in groups.values()],
+            titles=list(groups),
             selected_index=0,
         )
+        checks = [self.wounded] * able + [self.forward] * walks
         self.widget = widgets.VBox(
             [
                 widgets.HBox([self.playing, self.step, self.reset]),
                 self.method,
                 self.motion,
-                widgets.HBox([self.wounded, self.forward]),
+                *([widgets.HBox(checks)] if checks else []),
                 panels,
                 self.view,
             ],
@@ -97,12 +104,14 @@ class Controls:
         self.reset.on_click(lambda _: tell("reset", None))
         self.step.on_click(lambda _: tell("step", None))
 
-    def agree(self, gait: Gait) -> None:
+    def agree(self, gait: Gait | Path) -> None:
         """Set the sliders to what the gait says, and tell nobody."""
         self._quiet = True
         try:
             for name, slider in self.sliders.items():
-                slider.value = getattr(gait, name)
+                value = getattr(gait, name)
+                slider.min, slider.max = min(slider.min, value), max(slider.max, value)
+                slider.value = value
         finally:
             self._quiet = False
 
@@ -118,6 +127,12 @@ class Controls:
         self.playing.description = "Pause" if change["new"] else "Play"
 
 
+def motions(session: Session) -> list[str]:
+    """The names of the motions that a session's figure can make."""
+    known = list(MOTIONS) if isinstance(session.gait, Gait) else []
+    return known if session.gait.name in known else [*known, session.gait.name]
+
+
 def _same(old: Any, new: Any) -> bool:
     """Whether a slider in the page only rounded the number that it was given."""
     return isinstance(new, float) and abs(new - old) < 1e-9
@@ -126,6 +141,6 @@ def _same(old: Any, new: Any) -> bool:
 def _slider(value: float, label: str, low: float, high: float, step: float) -> Any:
     kind = widgets.IntSlider if isinstance(step, int) else widgets.FloatSlider
     return kind(
-        value=value, min=low, max=high, step=step, description=label, style=LABEL,
-        layout=widgets.Layout(width="auto"), continuous_update=True,
+        value=value, min=min(low, value), max=max(high, value), step=step, description=label,
+        style=LABEL, layout=widgets.Layout(width="auto"), continuous_update=True,
     )  # fmt: skip

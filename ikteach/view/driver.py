@@ -10,6 +10,7 @@ import traitlets
 from ipywidgets import Widget, widget_serialization
 
 from ikteach.arrays import Array
+from ikteach.view.closing import Living
 
 Move = tuple[Widget, int | list[list[int]]]
 """What is moved, and by which row of a frame; or, of a mesh, [row, points] of each of its parts."""
@@ -18,7 +19,7 @@ AHEAD = 30  # frames that may be sent and not yet known to be drawn: a second's
 PATIENCE = 10.0  # [s] without a sign of life before a page counts as gone
 
 
-class Driver(anywidget.AnyWidget):
+class Driver(Living, anywidget.AnyWidget):
     """Writes matrices into pythreejs objects (see driver.js) and hears what the page has drawn.
 
     renderer      what it draws with

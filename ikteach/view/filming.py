@@ -17,13 +17,12 @@ from ikteach.formats.movie import Pixels
 from ikteach.motion.log import Log
 from ikteach.names import unknown
 from ikteach.view.raycast import Eye, Solid, box, draw, ellipsoid, rod, solids, square
-from ikteach.view.scene import CAMERAS
-from ikteach.view.skin import EFFECTOR_COLOURS, GREY, skin_of
+from ikteach.view.skin import EFFECTOR_COLOURS, GREY
+from ikteach.view.stage import CAMERAS, PLANE, SQUARE, Stage
 
-TILE, TILES = 0.5, 6  # [m] a square of the floor, and how many lie on each side of the middle
+TILES = 6  # squares of the floor on each side of the middle
 PAPER, INK = (244, 246, 248), (45, 51, 64)
 LINE, MIDLINE, SHADOW = (203, 210, 217), (154, 165, 177), (221, 226, 231)
-BACK = 1.18  # how much farther than the live scene's camera, for a caption and a low floor
 
 
 class Shot(NamedTuple):
@@ -39,34 +38,38 @@ class Shot(NamedTuple):
 class Film:
     """A camera and what it films: `picture` makes one frame of size (width, height).
 
-    side   one of `scene.CAMERAS`
+    side   one of `stage.CAMERAS`, or "plane"; None: as a live scene looks at first
     finer  how many rays a pixel's side is made of: 1 is fast, 2 has smooth edges
     """
 
     def __init__(
         self, tree: Tree, effectors: Effectors, *, size: tuple[int, int] = (640, 480),
-        side: str = "three-quarter", finer: int = 2,
+        side: str | None = None, finer: int = 2,
     ) -> None:  # fmt: skip
-        if side not in CAMERAS:
-            raise LookupError(unknown("view", side, CAMERAS))
+        if side not in (None, *CAMERAS, PLANE):
+            raise LookupError(unknown("view", side, (*CAMERAS, PLANE)))
         self.tree, self.effectors, self.size, self._finer = tree, effectors, size, finer
+        self.stage = stage = Stage(tree, effectors)
+        unit, (width, height) = stage.unit, size
         self._eye = Eye(
-            BACK * np.array(CAMERAS[side]), (0, -0.1, 0), (size[0] * finer, size[1] * finer)
-        )
-        self._ground: tuple[Any, Pixels] | None = None
+            stage.eye(side or stage.side, max(width / height, 1)), stage.extent.centre,
+            (width * finer, height * finer), unit=unit,
+        )  # fmt: skip
+        self._ground: tuple[bytes, Pixels] | None = None
         k, place = len(effectors), {name: j for j, name in enumerate(tree.names)}
         here = len(tree)  # frames: the joints, then the ground, the targets, the gaps
         self._solids: list[Solid] = []
-        for part in skin_of(tree, effectors):
+        for part in stage.skin:
             frame = here if part.joint is None else place[part.joint]
             self._solids += solids(part, frame)
         for i, name in enumerate(effectors.names):
             colour, at = EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)], here + 1 + i
             boxed = name.endswith(".r")
-            ball = ellipsoid((0, 0, 0), (0.045,) * 3, colour, at)
-            self._solids += box(0.036, colour, at) if boxed else [ball]
+            ball = ellipsoid((0, 0, 0), (0.045 * unit,) * 3, colour, at)
+            self._solids += box(0.036 * unit, colour, at) if boxed else [ball]
+        thick = 0.007 * unit
         self._gaps = [
-            rod(np.zeros(3), np.array([0.0, 1, 0]), 0.007, 0.007, GREY, here + 1 + k + i)
+            rod(np.zeros(3), np.array([0.0, 1, 0]), thick, thick, GREY, here + 1 + k + i)
             for i in range(k)
         ]
 
@@ -83,10 +86,10 @@ class Film:
                 sticks(s, shot.targets),
             ]
         )
-        far = np.linalg.norm(shot.targets - s, axis=-1) > 1e-3  # a gap that can be seen
+        far = np.linalg.norm(shot.targets - s, axis=-1) > 1e-3 * self.stage.unit  # to be seen
         everything[-k:][~far] = np.eye(3, 4)
         parts = self._solids + [gap for gap, wide in zip(self._gaps, far, strict=True) if wide]
-        pixels = self._floor(shot.floor, shot.advance % TILE).copy()
+        pixels = self._floor(shot.floor, shot.advance).copy()
         draw(pixels, self._eye, parts, square(everything))
         image = Image.fromarray(pixels)
         if self._finer > 1:
@@ -95,30 +98,38 @@ class Film:
         return np.asarray(image)
 
     def _floor(self, height: float, advance: float) -> Pixels:
-        """Paper, the squares of the floor gliding back, and a soft spot under the pelvis."""
-        key = height, advance
+        """Paper, the squares of the floor gliding back, and a soft spot under the figure.
+
+        Of a figure in a plane, the squares of the wall behind it.
+        """
+        stage = self.stage
+        ground = stage.ground(height, advance)
+        key = ground.tobytes()
         if self._ground is None or self._ground[0] != key:
             image = Image.new("RGB", self._eye.size, PAPER)
             pen = ImageDraw.Draw(image)
-            turn = np.linspace(0, 2 * np.pi, 49)
-            circle = np.stack([np.cos(turn), 0 * turn, np.sin(turn)], axis=-1)
-            flat, away = self._eye.project(circle * [0.42, 0, 0.34] + [0, height, 0])
-            if (away > 0.1).all():
-                pen.polygon([tuple(point) for point in flat], fill=SHADOW)
+            if not stage.planar:
+                self._spot(pen, height)
+            tile = SQUARE * stage.unit
+            along = tile * np.linspace(-TILES, TILES, 25)
             for i in range(-TILES, TILES + 1):
-                colour = LINE if i else MIDLINE
-                self._line(pen, (i * TILE, height), 0, advance, colour)
-                self._line(pen, (i * TILE - advance, height), 2, advance, colour)
+                across = np.full(25, i * tile)
+                for x, z in (across, along), (along, across):
+                    points = np.stack([x, 0 * x, z], axis=-1) @ ground[:, :3].T + ground[:, 3]
+                    self._line(pen, points, LINE if i else MIDLINE)
             self._ground = key, np.asarray(image)
         return self._ground[1]
 
-    def _line(
-        self, pen: Any, at: tuple[float, float], axis: int, advance: float, colour: Any
-    ) -> None:
-        """A line of the floor at coordinate `at` of an axis, in pieces, as far as it is seen."""
-        along = np.linspace(-TILES * TILE, TILES * TILE, 25)
-        points = np.full((25, 3), at[1])
-        points[:, axis], points[:, 2 - axis] = at[0], along - (advance if axis == 0 else 0)
+    def _spot(self, pen: Any, height: float) -> None:
+        turn = np.linspace(0, 2 * np.pi, 49)
+        circle = np.stack([0.42 * np.cos(turn), 0 * turn, 0.34 * np.sin(turn)], axis=-1)
+        x, _, z = self.stage.base
+        flat, away = self._eye.project(self.stage.unit * circle + [x, height, z])
+        if (away > 0.1).all():
+            pen.polygon([tuple(point) for point in flat], fill=SHADOW)
+
+    def _line(self, pen: Any, points: Array, colour: Any) -> None:
+        """A line of the floor in pieces, as far as it is seen."""
         flat, away = self._eye.project(points)
         for (start, end), near in zip(pairwise(flat), away[:-1], strict=True):
             if near > 0.3:
@@ -172,7 +183,7 @@ def shot(run: Log, clock: float, *, method: str | None = None, title: str = "") 
 
 def film(
     run: Log, *, rate: float = 30, size: tuple[int, int] = (640, 480),
-    side: str = "three-quarter", finer: int = 2, **which: Any,
+    side: str | None = None, finer: int = 2, **which: Any,
 ) -> Iterator[Pixels]:  # fmt: skip
     """The pictures of a run, for `formats.movie.write`; `which` as in `shots`."""
     camera = Film(run.tree, run.effectors, size=size, side=side, finer=finer)

@@ -7,7 +7,7 @@ import ipywidgets as widgets
 from ikteach.motion.anatomy import Anatomy, anatomy
 from ikteach.motion.session import Session
 from ikteach.view.acting import Actor
-from ikteach.view.closing import close_all
+from ikteach.view.closing import Living
 from ikteach.view.glass_pages import PAGES, Names, Page
 from ikteach.view.picture import Picture
 from ikteach.view.status import Status
@@ -18,19 +18,20 @@ STYLE = (
 )
 
 
-class Glass(widgets.VBox):  # type: ignore[misc]
+class Glass(Living, widgets.VBox):  # type: ignore[misc]
     """The next tick of a session, taken apart: e, J, U Σ Vᵀ, each method's share, Δθ, movement.
 
     session  whose next tick is looked at; looking changes nothing in it
     stop     is called before looking, to stop whatever lets time pass: `player.pause`
     show     is called after "Do this tick", to draw the pose that came of it
+    slot     only one of a slot lives at a time: to run a cell again closes the older one
     """
 
     def __init__(
         self, session: Session, stop: Callable[[], None] = lambda: None,
-        show: Callable[[], None] = lambda: None,
+        show: Callable[[], None] = lambda: None, *, slot: str | None = "glass",
     ) -> None:  # fmt: skip
-        self.session, self._stop, self._show = session, stop, show
+        self.session, self._stop, self._show, self.slot = session, stop, show, slot
         self.names = Names(session.effectors.names, session.tree.names)
         self.tick: Anatomy | None = None
         self._pages: dict[int, Page] = {}  # of this tick, drawn when they are first opened
@@ -95,13 +96,6 @@ class Glass(widgets.VBox):  # type: ignore[misc]
         if self.number not in self._pages:
             self._pages[self.number] = PAGES[self.number](self.tick, self.names)
         return self._pages[self.number]
-
-    def close(self) -> None:
-        """Free the widgets."""
-        if getattr(self, "comm", None) is None:
-            return
-        close_all(*self.children, self.layout)
-        super().close()
 
     def _again(self) -> None:
         if self.tick is not None:

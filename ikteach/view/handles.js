@@ -63,11 +63,12 @@ async function render({ model, el }) {
   }
 
   function keep() {
+    const hair = model.get("step") / 50; // a millimetre on a human
     for (const [node, one] of pins) {
       const { matrix } = nodes[node].obj;
       const kernel = vector().setFromMatrixPosition(matrix);
-      const news = one.seen === null || kernel.distanceTo(one.seen) > 1e-6;
-      const met = news && kernel.distanceTo(one.at) < 1e-3;
+      const news = one.seen === null || kernel.distanceTo(one.seen) > hair / 1000;
+      const met = news && kernel.distanceTo(one.at) < hair;
       if (!drag && (met || performance.now() > one.until)) {
         pins.delete(node);
       } else {

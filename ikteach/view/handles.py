@@ -9,7 +9,7 @@ import traitlets
 from ipywidgets import Widget, widget_serialization
 
 from ikteach.view.acting import in_words
-from ikteach.view.closing import close_all
+from ikteach.view.closing import Living
 from ikteach.view.positions import Positions
 from ikteach.view.scene import Scene
 from ikteach.view.skin import SKY
@@ -18,7 +18,7 @@ HERE = Path(__file__).parent
 STEP = 0.05  # [m] one press of an arrow key, on a figure of a human's size
 
 
-class Handles(anywidget.AnyWidget):
+class Handles(Living, anywidget.AnyWidget):
     """Lets the targets of a scene be moved in it, and writes where they are into `positions`.
 
     Mouse, touch   drag a target in the plane that faces the camera, which stands still meanwhile
@@ -31,6 +31,7 @@ class Handles(anywidget.AnyWidget):
     Whoever wants to know asks `positions.on_change`. Display the scene; the handles are under it.
     """
 
+    foreign = frozenset({"renderer", "nodes"})  # the scene's
     _esm = (HERE / "courier.js").read_text() + (HERE / "handles.js").read_text()
     renderer = traitlets.Instance(Widget).tag(sync=True, **widget_serialization)
     halo = traitlets.Instance(Widget).tag(sync=True, **widget_serialization)
@@ -70,12 +71,6 @@ class Handles(anywidget.AnyWidget):
         self.send({"let": True})
         if index is not None:
             self.send({"say": f"Taken back. {self.positions.words(index)}"})
-
-    def close(self) -> None:
-        """Free what the page and the kernel hold of it."""
-        if self.comm:
-            close_all(self.halo, self.layout)
-        super().close()
 
     def _hear(self, _: Any, content: dict[str, Any], __: Any) -> None:
         try:

@@ -9,23 +9,24 @@ from ikteach.formats.session import load, save
 from ikteach.motion.log import Log
 from ikteach.motion.session import Session
 from ikteach.view.acting import Actor
-from ikteach.view.closing import close_all
+from ikteach.view.closing import Living, close_all
 from ikteach.view.replay import Replay
 from ikteach.view.status import Status
 
 
-class Keeper(widgets.VBox):  # type: ignore[misc]
+class Keeper(Living, widgets.VBox):  # type: ignore[misc]
     """Save what happened, and open it again: file name, Save, Open.
 
-    session  what is saved
-    open_run is given the run that was opened; if there is none, a `Replay` of it in this widget
+    session   what is saved
+    open_run  is given the run that was opened; if there is none, a `Replay` of it in this widget
+    slot      only one of a slot lives at a time: to run a cell again closes the older one
     """
 
     def __init__(
         self, session: Session, open_run: Callable[[Log], None] | None = None, *,
-        folder: str | Path = ".",
+        folder: str | Path = ".", slot: str | None = "files",
     ) -> None:  # fmt: skip
-        self.session, self.folder = session, Path(folder)
+        self.session, self.folder, self.slot = session, Path(folder), slot
         self._open_run = open_run or self._replay
         self._act = Actor()
         self.name = widgets.Text(value="session", description="File name")
@@ -39,13 +40,6 @@ class Keeper(widgets.VBox):  # type: ignore[misc]
         self.opening.on_click(lambda _: self._act(self._open, self.status.fail))
         buttons = widgets.HBox([self.saving, self.opening])
         super().__init__([self.name, self.replace, buttons, self.status, self.place])
-
-    def close(self) -> None:
-        """Free the widgets."""
-        if getattr(self, "comm", None) is None:
-            return
-        close_all(*self.children, self.layout)
-        super().close()
 
     def _path(self) -> Path:
         if not self.name.value.strip():
@@ -68,7 +62,5 @@ class Keeper(widgets.VBox):  # type: ignore[misc]
         self.status.say(f"{len(run)} ticks and {len(run.events)} events are open. {run.lost()}")
 
     def _replay(self, run: Log) -> None:
-        replay = Replay(run)
-        for old in self.place.children:
-            old.close()
-        self.place.children = [replay]
+        before, self.place.children = self.place.children, [Replay(run, slot=None)]
+        close_all(*before)

@@ -5,18 +5,18 @@ what went wrong. State is in the session; the loop runs only while it plays and 
 import asyncio
 from collections.abc import Callable
 from time import monotonic
-from typing import Any, ClassVar
+from typing import Any
 
 import ipywidgets as widgets
 
 from ikteach.view.acting import Actor, in_words
-from ikteach.view.closing import close_all
+from ikteach.view.closing import Living
 from ikteach.view.scene import Scene
 from ikteach.view.status import Status
 from ikteach.view.strips import EVERY, Strips
 
 
-class Live(widgets.VBox):  # type: ignore[misc]
+class Live(Living, widgets.VBox):  # type: ignore[misc]
     """A session that is played. Only one of a `slot` lives at a time: to run a cell again closes
     the one that it made before.
 
@@ -26,15 +26,13 @@ class Live(widgets.VBox):  # type: ignore[misc]
     A subclass says how to `draw`, what to `report` now and then, and puts `children` in place.
     """
 
-    _living: ClassVar[dict[str, "Live"]] = {}
     REPORT_EVERY = 30  # ticks
     SELDOM = 3  # times as rarely come curves and words, where the machine is too slow for all
 
-    def __init__(self, session: Any, scene: Scene, slot: str, strips: Strips | None = None) -> None:
-        if slot in self._living:
-            self._living.pop(slot).close()
-        self._living[slot] = self
-        self._slot = slot
+    def __init__(
+        self, session: Any, scene: Scene, slot: str | None, strips: Strips | None = None
+    ) -> None:
+        self.slot = slot
         self.session, self.scene, self.strips = session, scene, strips
         self.playing = True
         self.status = Status()
@@ -95,14 +93,10 @@ class Live(widgets.VBox):  # type: ignore[misc]
         self.say_playing(on)
         self.wake()
 
-    def close(self) -> None:
-        """Stop the loop and free all that the page and the kernel hold of it."""
+    def end(self) -> None:
+        """End the loop, for good."""
+        self._act.loop = None
         self.stop()
-        if self._living.get(self._slot) is self:
-            del self._living[self._slot]
-        self.scene.close()
-        close_all(*self.children, self.layout)
-        super().close()
 
     def stop(self) -> None:
         """End the loop."""

@@ -12,7 +12,7 @@ from ikteach.view import shapes, solids
 from ikteach.view.fused import Piece, Runs, fused
 from ikteach.view.skin import BLUE, GREEN, ORANGE, PURPLE, RED, SKY
 from ikteach.view.solids import effector_colour
-from ikteach.view.stage import LAYERS, SHOWN_AT, Now, Stage
+from ikteach.view.stage import LAYERS, SHOWN_AT, Now, Stage, picture_axes
 from ikteach.view.trails import MARKS, PRINTS, Prints, Trail, feet
 
 AXIS_COLOURS = (RED, GREEN, BLUE)
@@ -55,12 +55,13 @@ class Layer:
 
 
 class WorldAxes(Layer):
-    """x, y and z through the origin, each with its letter. Nothing moves them."""
+    """x, y and z from where the figure is fixed, each with its letter. Nothing moves them."""
 
     def build(self) -> None:
         """Three half axes where each figure stands."""
         unit, rod = self.stage.unit, shapes.rod(0.012 * self.stage.unit)
         places = self.stage.places[:1] if self.stage.overlaid else self.stage.places
+        places = places + self.stage.base
         ways = list(zip(np.eye(3), "xyz", AXIS_COLOURS, strict=True))
         pieces = [
             Piece(0, rod.at(sticks(place, place + 0.7 * unit * way)), colour)
@@ -121,7 +122,7 @@ class Footprints(Layer):
         """A ring of prints for each foot of each figure."""
         stage, names = self.stage, self.stage.effectors.names
         self._feet = feet(stage.effectors)
-        self._prints = Prints((len(stage), len(self._feet)), PRINTS)
+        self._prints = Prints((len(stage), len(self._feet)), PRINTS, 1e-4 * stage.unit)
         size = 0.045 * stage.unit, 0.11 * stage.unit
         soles = [shapes.sole(names[i], *size) for i in self._feet for _ in range(PRINTS)]
         colours = [effector_colour(i) for i in self._feet for _ in range(PRINTS)]
@@ -131,7 +132,8 @@ class Footprints(Layer):
     def place(self, now: Now) -> Array:
         """The prints, on the floor."""
         marks = self._prints.pass_through(now.effectors[:, self._feet], now.advance)
-        marks[..., 1] = np.where(np.isnan(marks[..., 1]), np.nan, now.floor + 0.006)
+        over = now.floor + 0.006 * self.stage.unit
+        marks[..., 1] = np.where(np.isnan(marks[..., 1]), np.nan, over)
         return _at(marks + self.stage.places[:, None, None])
 
     def clear(self) -> None:
@@ -149,14 +151,14 @@ class Columns(Layer):
         self.add([arrow] * n * len(self.stage), [effector_colour(j) for j in range(n)])
 
     def place(self, now: Now) -> Array:
-        """Arrows of `SHOWN_AT` metres for 1 m/rad; none for a joint that does not move it."""
+        """Arrows as `Stage.arrows` has them; none for a joint that does not move it."""
         if now.columns is None:
             return np.broadcast_to(HIDDEN, (self.rows, 3, 4))
         start = now.effectors[:, now.effector, None] + self.stage.places[:, None]
-        along = SHOWN_AT * now.columns.swapaxes(-1, -2)
-        short = np.linalg.norm(along, axis=-1) < 1e-6
+        along, unit = self.stage.arrows(now.columns), self.stage.unit
+        short = np.linalg.norm(along, axis=-1) < 1e-6 * unit
         start = np.broadcast_to(start, along.shape)
-        found = sticks(start, np.where(short[..., None], start + [0, 1, 0], start + along))
+        found = sticks(start, np.where(short[..., None], start + [0, unit, 0], start + along))
         return np.where(short[..., None, None], HIDDEN, found).reshape(-1, 3, 4)
 
 
@@ -194,10 +196,11 @@ class Reach(Layer):
         """Outer and inner in turn; hidden where there is no such chain, or no hole."""
         f, k = len(self.stage), len(self.stage.effectors)
         found = np.tile(HIDDEN, (f, k, 2, 1, 1))
+        axes = np.eye(3) if self.stage.normal is None else picture_axes(self.stage.normal)
         for i, (centre, inner, outer) in enumerate(now.reach):
             for side, radius in enumerate((outer, inner)):
-                if radius > 1e-6:
-                    found[:, i, side, :, :3] = radius * np.eye(3)
+                if radius > 1e-6 * self.stage.unit:
+                    found[:, i, side, :, :3] = radius * axes
                     found[:, i, side, :, 3] = centre + self.stage.places
         return found.reshape(-1, 3, 4)
 

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 import anywidget
 import traitlets
 
+from ikteach.view.closing import Living
+
 _ESM = """
 function render({ model, el }) {
   const image = document.createElement("img");
@@ -28,7 +30,7 @@ export default { render };
 """
 
 
-class Picture(anywidget.AnyWidget):
+class Picture(Living, anywidget.AnyWidget):
     """A PNG and its text alternative; both can change at any time."""
 
     _esm = _ESM

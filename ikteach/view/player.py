@@ -1,36 +1,42 @@
 """The walking human of chapter 7: scene, controls, curves and table, alive."""
 
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 import ipywidgets as widgets
 
-from ikteach.motion.gait import MOTIONS, WOUND
+from ikteach.motion.gait import MOTIONS, WOUND, Gait
+from ikteach.motion.methods import Methods
+from ikteach.motion.path import Path
 from ikteach.motion.session import Session
-from ikteach.solvers import SOLVERS, Solver
 from ikteach.study import distances
 from ikteach.view.controls import Controls
+from ikteach.view.lengths import Lengths
 from ikteach.view.live import Live
 from ikteach.view.scene import Scene
 from ikteach.view.strips import SECONDS, Strips
 
 
 class GaitPlayer(Live):
-    """A human that follows the targets of a gait, by every method at once; one of them is shown.
+    """A figure that follows the targets of a gait, by every method at once; one of them is shown.
+
+    methods  {name: solver}, or solvers and their names in a list, or one of them alone; the four
+             of the course if none are given
+    options  go to `Session`: the figure (a human if none is given), its gait or path, and so on
 
     Display it in a notebook. `session` holds all state and may be changed from cells while the
     figure moves.
     """
 
     def __init__(
-        self, methods: Mapping[str, Solver] = SOLVERS, *, slot: str = "gait", **options: Any
+        self, methods: Methods | None = None, *, slot: str | None = "gait", **options: Any
     ) -> None:
         session = Session(methods=methods, **options)
-        scene = Scene(session.tree, session.effectors)
+        scene = Scene(session.tree, session.effectors, slot=None)
         super().__init__(session, scene, slot, Strips(session))
         self._table = widgets.HTML()
-        self.controls = Controls(list(methods), session)
+        self._first = session.gait
+        self.controls = Controls(list(session.methods), session)
         self.controls.on_change(self.guarded(self._obey))
         self.children = [
             widgets.HBox([self.scene.widget, self.controls.widget]),
@@ -72,9 +78,7 @@ class GaitPlayer(Live):
         if name == "method":
             session.show(value)
         elif name == "motion":
-            session.gait = replace(
-                MOTIONS[value], forward=session.gait.forward, wound=session.gait.wound
-            )
+            session.gait = other_motion(session, value, self._first)
             self.controls.agree(session.gait)
         elif name == "wounded":
             session.change(wound=WOUND if value else {})
@@ -90,15 +94,25 @@ class GaitPlayer(Live):
             session.change(**{name: value})
 
 
+def other_motion(session: Session, name: str, start: Gait | Path) -> Gait | Path:
+    """The motion of that name, or the one that it began with, with what is set about the figure."""
+    gait: Gait | Path = MOTIONS[name] if name in MOTIONS and name != start.name else start
+    if isinstance(gait, Gait):
+        return replace(gait, forward=session.gait.forward, wound=session.gait.wound)
+    return replace(gait, wound=session.gait.wound)
+
+
 def words(session: Session) -> str:
     """The shown figure in words: what it does, by which method, and how well."""
+    length = Lengths.of(session.tree, session.effectors)
     far = ", ".join(
-        f"{name} {100 * d:.1f} cm"
+        f"{name} {length(d)}"
         for name, d in zip(session.effectors.names, session.error, strict=True)
     )
     motion = "by hand" if session.by_hand else session.gait.name
     wounded = "wounded, " if session.gait.wound else ""
-    return f"A human, {wounded}{motion} by {session.method}. From its target: {far}."
+    who = "human" if isinstance(session.gait, Gait) else "figure"
+    return f"A {who}, {wounded}{motion} by {session.method}. From its target: {far}."
 
 
 def table(session: Session, shown: str | None = None) -> str:
@@ -107,8 +121,10 @@ def table(session: Session, shown: str | None = None) -> str:
     if not tracks:
         return "<p>No tick yet: the table fills when the figure moves.</p>"
     frame = distances(tracks).rename(index={shown: f"{shown} (shown)"})
+    length = Lengths.of(session.tree, session.effectors)
+    frame.loc[:, [*session.effectors.names, "worst"]] *= 0.01 / length.metres
     return (
-        "<p>Distance to target in cm, mean of the last 10 s; worst distance in cm; jitter "
+        f"<p>Distance to target in {length.name}, mean of the last 10 s; worst of them; jitter "
         "(mean ‖Δ²θ‖) in degrees; joints held at limits, on average.</p>"
         + frame.to_html(float_format="{:.2f}".format, border=0, classes="ikteach-table")
     )

@@ -6,8 +6,10 @@ from typing import Any
 import anywidget
 import traitlets
 
+from ikteach.view.closing import Living
 
-class Curve(anywidget.AnyWidget):
+
+class Curve(Living, anywidget.AnyWidget):
     """A picture of curves with a line at the chosen place; a click or the arrow keys move it.
 
     png, alt  the picture, and what it shows in words
@@ -26,7 +28,7 @@ class Curve(anywidget.AnyWidget):
     chosen = traitlets.Int(0).tag(sync=True)
 
 
-class Rows(anywidget.AnyWidget):
+class Rows(Living, anywidget.AnyWidget):
     """A table whose rows can be chosen with a click or the arrow keys.
 
     header, rows  words; chosen: the number of the chosen row

@@ -1,16 +1,18 @@
 """Live figures that are posed by sliders: chapters 0 and 1."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import ipywidgets as widgets
 import numpy as np
 
 from ikteach.arrays import Array
 from ikteach.body import forward, jacobian, locate
+from ikteach.body.extent import extent
 from ikteach.body.figures import TOGETHER, Figure
 from ikteach.body.partials import by_differences
 from ikteach.view.bench import WIDE, Bench, Shown, choice, log_slider
+from ikteach.view.lengths import Lengths, digits_of, round_step
 from ikteach.view.scene import Scene
 
 WAYS = ("v × (s − p)", "finite differences")
@@ -29,7 +31,7 @@ class SceneBench(Bench):
         show: Callable[..., Shown],
         controls: Mapping[str, Any],
         *,
-        slot: str,
+        slot: str | None,
         panel: Sequence[widgets.Widget] | None = None,
     ) -> None:
         self.scene = scene
@@ -50,12 +52,6 @@ class SceneBench(Bench):
         if self.scene.driver.description != self.words:
             self.scene.driver.description = self.words
 
-    def close(self) -> None:
-        """Free all that the page and the kernel hold of it."""
-        if getattr(self, "comm", None) is not None and self.scene.renderer.comm is not None:
-            self.scene.close()
-        super().close()
-
     def _seen(self, new: bool) -> None:
         if new:  # a page that has just opened knows no pose
             self._after(None)
@@ -72,12 +68,14 @@ class Poser(SceneBench):
     (`figures.TOGETHER`) have one slider.
     """
 
-    def __init__(self, figure: Figure, *, slot: str = "poser") -> None:
+    def __init__(self, figure: Figure, *, slot: str | None = "poser") -> None:
         self.figure = figure
         self._lead = {b: a for a, b in TOGETHER if {a, b} <= set(figure.tree.names)}
+        scales = [Dial.of(figure, j) for j in range(len(figure.tree))]
+        self._each = np.array([dial.each for dial in scales])
         sliders = {
-            name: _joint_slider(figure, j)
-            for j, name in enumerate(figure.tree.names)
+            name: dial.slider(name)
+            for name, dial in zip(figure.tree.names, scales, strict=True)
             if name not in self._lead
         }
         groups: dict[str, list[Any]] = {}
@@ -89,7 +87,7 @@ class Poser(SceneBench):
             selected_index=0,
         )
         more = self._more()
-        scene = Scene(*figure, width=460, height=480)
+        scene = Scene(*figure, width=460, height=480, slot=None)
         controls = {**more, **sliders}
         super().__init__(
             scene, self._pose, controls, slot=slot, panel=[*more.values(), panel]
@@ -99,8 +97,8 @@ class Poser(SceneBench):
         """The pose that the sliders say, (n,) [rad]."""
         said = self.values if values is None else values
         tree = self.figure.tree
-        degrees = np.array([said[self._lead.get(name, name)] for name in tree.names], dtype=float)
-        return np.clip(np.radians(degrees), tree.lower, tree.upper)
+        values_said = [said[self._lead.get(name, name)] for name in tree.names]
+        return np.clip(self._each * values_said, tree.lower, tree.upper)
 
     def _more(self) -> dict[str, Any]:
         """Controls over the sliders."""
@@ -110,23 +108,26 @@ class Poser(SceneBench):
         tree, effectors = self.figure
         theta = self.theta(values)
         s = locate(forward(tree, theta), effectors)
+        unit = Lengths.of_places(self.scene.stage.extent.radius)
         self.scene.show(theta, s)
         rows = "".join(
             f"<tr><th scope='row' style='text-align:left'>{name}</th>"
-            + "".join(f"<td>{x:.3f}</td>" for x in row)
+            + "".join(f"<td>{unit.number(x, 3)}</td>" for x in row)
             + "</tr>"
             for name, row in zip(effectors.names, s, strict=True)
         )
         table = (
-            "<table class='ikteach-table'><caption>where the effectors are [m]</caption>"
+            f"<table class='ikteach-table'><caption>where the effectors are [{unit.name}]</caption>"
             "<thead><tr><th></th><th>x (left)</th><th>y (up)</th><th>z (forward)</th></tr></thead>"
             f"<tbody>{rows}</tbody></table>"
         )
         places = ", ".join(
-            f"{name} ({x:.2f}, {y:.2f}, {z:.2f})"
-            for name, (x, y, z) in zip(effectors.names, s, strict=True)
+            f"{name} ({', '.join(unit.number(x, 2) for x in row)})"
+            for name, row in zip(effectors.names, s, strict=True)
         )
-        return Shown(b"", f"A figure of {len(tree)} joints. Its effectors, in m: {places}.", table)
+        return Shown(
+            b"", f"A figure of {len(tree)} joints. Its effectors, in {unit.name}: {places}.", table
+        )
 
 
 class ColumnPoser(Poser):
@@ -135,7 +136,7 @@ class ColumnPoser(Poser):
     Half a metre on the screen is 1 m/rad.
     """
 
-    def __init__(self, figure: Figure, *, slot: str = "columns") -> None:
+    def __init__(self, figure: Figure, *, slot: str | None = "columns") -> None:
         super().__init__(figure, slot=slot)
         self.scene.switch("columns of J")
 
@@ -157,32 +158,76 @@ class ColumnPoser(Poser):
         columns = J if way == WAYS[0] else differences
         self.scene.show(theta, locate(frames, effectors), effector=i, columns=columns)
         gap = abs(J - differences).max()
-        moved = np.flatnonzero(abs(J).max(axis=0) > 1e-9)
+        least = 1e-9 * self.scene.stage.unit  # of what is no rounding [m/rad]
+        moved = np.flatnonzero(abs(J).max(axis=0) > least)
         words = (
             f"{len(moved)} of {len(tree)} columns move {effector}. "
             f"Formula and differences with h = {h:.2g} rad differ by at most {gap:.2g} m/rad."
         )
         lengths = ", ".join(
-            f"{tree.names[j]} {length:.2f}"
+            f"{tree.names[j]} {length:.3g}"
             for j, length in enumerate(np.linalg.norm(columns, axis=0))
-            if length > 1e-9
+            if length > least
         )
         return Shown(
             b"", f"{words} Lengths: {lengths}.", f"<p>{words}<br>Lengths [m/rad]: {lengths}.</p>"
         )
 
 
-def _joint_slider(figure: Figure, j: int) -> Any:
-    tree = figure.tree
-    low, high = (
-        round(float(np.degrees(limit))) if np.isfinite(limit) else free
-        for limit, free in ((tree.lower[j], -180), (tree.upper[j], 180))
-    )
-    return widgets.FloatSlider(
-        value=round(float(np.degrees(tree.rest[j]))), min=low, max=high, step=1,
-        description=f"{tree.names[j]} ({low}…{high}°)", style={"description_width": "175px"},
-        readout_format=".0f", layout=widgets.Layout(width="auto"),
-    )  # fmt: skip
+class Dial(NamedTuple):
+    """How a joint is set by a person: degrees of a hinge, a length of a slide.
+
+    each        what one unit is of θ [rad or m]
+    unit        its name
+    low, high   ends of the range
+    value       the rest
+    step        of the slider
+    """
+
+    each: float
+    unit: str
+    low: float
+    high: float
+    value: float
+    step: float
+
+    @classmethod
+    def of(cls, figure: Figure, j: int) -> "Dial":
+        """The dial of joint j: from limit to limit.
+
+        A hinge that can turn for ever is set within ±180°, one with one limit through a whole turn
+        from it; a slide goes on by the size of the body.
+        """
+        tree, slide = figure.tree, bool(figure.tree.slide[j])
+        size = extent(*figure).radius
+        lengths = Lengths.of_places(size)
+        each, unit = (lengths.metres, f" {lengths.name}") if slide else (np.radians(1), "°")
+        lower, rest, upper = (float(x[j]) / each for x in (tree.lower, tree.rest, tree.upper))
+        far = size / each if slide else 180.0
+        if not slide and 3600 < upper - lower < np.inf:  # limits in name only
+            lower, upper = -np.inf, np.inf
+        if np.isinf(lower) and np.isinf(upper):
+            middle = rest if slide else 0.0
+            rest = rest if slide else (rest + 180) % 360 - 180
+            lower, upper = middle - far, middle + far
+        elif np.isinf(lower):
+            lower = min(rest, upper) - 2 * far
+        elif np.isinf(upper):
+            upper = max(rest, lower) + 2 * far
+        step = round_step(upper - lower) if upper > lower else 1.0
+        if not slide and upper - lower >= 30:
+            step = 1.0
+        low, value, high = (float(f"{x:.12g}") for x in (lower, rest, upper))
+        return cls(float(each), unit, low, high, min(max(value, low), high), step)
+
+    def slider(self, name: str) -> Any:
+        """A slider for it, with its ends in its label."""
+        return widgets.FloatSlider(
+            value=self.value, min=self.low, max=self.high, step=self.step,
+            description=f"{name} ({self.low:.4g}…{self.high:.4g}{self.unit})",
+            style={"description_width": "175px"}, readout_format=f".{digits_of(self.step)}f",
+            layout=widgets.Layout(width="auto"),
+        )  # fmt: skip
 
 
 def _moves(figure: Figure, joint: str) -> str:

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike
+from ikteach.view.lengths import METRE, Lengths, digits_of
 
 AXES = "xyz"
 KEEP = 200  # moves that can be taken back
@@ -15,13 +16,17 @@ class Positions:
 
     names      what the targets are called
     low, high  (k, 3) the range of each coordinate [m]
+    unit       in which they are told to a person
+    step       what is told apart [m]
 
     It stores, and tells whoever asked with `on_change`; it solves nothing.
     """
 
     def __init__(
-        self, names: Sequence[str], start: ArrayLike, low: ArrayLike, high: ArrayLike
-    ) -> None:
+        self, names: Sequence[str], start: ArrayLike, low: ArrayLike, high: ArrayLike,
+        *, unit: Lengths = METRE, step: float = 0.01,
+    ) -> None:  # fmt: skip
+        self.unit, self._digits = unit, digits_of(step / unit.metres)
         self.names = list(names)
         shape = (len(self.names), 3)
         self._now = np.array(start, dtype=float)
@@ -77,8 +82,11 @@ class Positions:
 
     def words(self, index: int) -> str:
         """Where a target is, to be read or heard."""
-        x, y, z = self._now[index]
-        return f"{self.names[index]}: x {x:.2f}, y {y:.2f}, z {z:.2f} m"
+        x, y, z = (self._said(value) for value in self._now[index])
+        return f"{self.names[index]}: x {x}, y {y}, z {z} {self.unit.name}"
+
+    def _said(self, length: float) -> str:
+        return self.unit.number(length, self._digits)
 
     def _told(self, index: int) -> None:
         for tell in self._tell:
@@ -91,7 +99,10 @@ class Positions:
         for axis, value, low, high in zip(
             AXES, position, self.low[index], self.high[index], strict=True
         ):
-            if not low - 1e-9 <= value <= high + 1e-9:
-                where = f"{axis} of {self.names[index]} goes from {low:.2f} to {high:.2f} m"
-                what = f"{value:g} is not between them" if value == value else "this is no number"
+            hair = 1e-9 * max(high - low, abs(low), abs(high))
+            if not low - hair <= value <= high + hair:
+                ends = f"{self._said(low)} to {self._said(high)} {self.unit.name}"
+                where = f"{axis} of {self.names[index]} goes from {ends}"
+                said = f"{value / self.unit.metres:g}"
+                what = f"{said} is not between them" if value == value else "this is no number"
                 raise ValueError(f"{where}; {what}")

@@ -1,17 +1,21 @@
-"""Chapter 8's widget: four humans, one set of targets, one clock, one log."""
+"""Chapter 8's widget: a figure for each method, one set of targets, one clock, one log."""
 
+import html
 from math import radians
 from typing import Any
 
 import ipywidgets as widgets
 import numpy as np
 
-from ikteach.motion import BUSS_CAPS, gait
+from ikteach.motion import BUSS_CAPS
+from ikteach.motion.gait import stature
+from ikteach.motion.methods import Methods
 from ikteach.motion.session import Session
-from ikteach.solvers import SOLVERS
 from ikteach.view.bench import choice, slider
+from ikteach.view.controls import motions
+from ikteach.view.lengths import Lengths
 from ikteach.view.live import Live
-from ikteach.view.player import table
+from ikteach.view.player import other_motion, table
 from ikteach.view.scene import Scene
 from ikteach.view.strips import SECONDS, Strips
 
@@ -19,24 +23,44 @@ EQUAL, OWN = "equal caps", "each author's caps"
 
 
 class Race(Live):
-    """Four humans that follow the same targets at the same moment, each by its own method.
+    """Figures that follow the same targets at the same moment, each by its own method.
+
+    methods  {name: solver}, or solvers and their names in a list, or one of them alone; the four
+             of the course if none are given
+    degrees  the step cap of all [° a step]
+    options  go to `Session`: the figure (a human if none is given), its gait or path, and so on
 
     Display it in a notebook. `session` holds all state; `values` is what the controls say.
     """
 
-    def __init__(self, degrees: float = 30.0, *, slot: str = "race") -> None:
-        session = Session()
+    def __init__(
+        self, methods: Methods | None = None, *, degrees: float = 30.0, slot: str | None = "race",
+        **options: Any,
+    ) -> None:  # fmt: skip
+        session = Session(methods=methods, **options)
+        size = stature(session.tree, session.effectors)
+        count = len(session.methods)
         scene = Scene(
-            session.tree, session.effectors, names=list(SOLVERS), apart=1.9, width=960, height=400
+            session.tree,
+            session.effectors,
+            names=[*session.methods],
+            apart=None if size is None else 1.9 * size[0],  # so that running hands do not meet
+            width=540 if count == 1 else min(960, 240 * count + 120),
+            height=400,
+            slot=None,
         )
+        self._first = session.gait
         super().__init__(session, scene, slot, Strips(session))
         self._table = widgets.HTML()
         step, reset = (widgets.Button(description=words) for words in ("Step", "Reset"))
+        speed = session.gait.speed
         self.controls = {
             "caps": choice("caps", [EQUAL, OWN]),
-            "motion": choice("motion", list(gait.MOTIONS)),
-            "degrees": slider("equal cap [° a step]", degrees, 1.0, 45.0, 0.5),
-            "speed": slider("speed ω [rad/s]", session.gait.speed, 0.0, 20.0, 0.1),
+            "motion": choice("motion", motions(session), session.gait.name),
+            "degrees": slider(
+                "equal cap [° a step]", degrees, min(1.0, degrees), max(45.0, degrees), 0.5
+            ),
+            "speed": slider("speed ω [rad/s]", speed, min(0.0, speed), max(20.0, speed), 0.1),
         }
         step.on_click(self.guarded(lambda _: self.step()))
         reset.on_click(self.guarded(lambda _: session.reset()))
@@ -64,9 +88,11 @@ class Race(Live):
         """Who is how far from the targets, on average of the last seconds."""
         session = self.session
         tracks = session.tracks(last=round(SECONDS / session.dt))
-        far = ", ".join(f"{name} {100 * run.error.mean():.1f} cm" for name, run in tracks.items())
+        length = Lengths.of(session.tree, session.effectors)
+        far = ", ".join(f"{name} {length(run.error.mean())}" for name, run in tracks.items())
+        who = self.scene.stage.crowd
         caps = self.values["caps"]
-        return f"Four humans, {session.gait.name}, {caps}. Mean distance: {far or 'no tick yet'}."
+        return f"{who}, {session.gait.name}, {caps}. Mean distance: {far or 'no tick yet'}."
 
     def refresh(self) -> None:
         """Take one tick, and report."""
@@ -77,24 +103,29 @@ class Race(Live):
         """Have the scene show what the session says."""
         session = self.session
         self.scene.show(
-            np.array([session.theta[name] for name in SOLVERS]),
+            np.array([*session.theta.values()]),
             session.targets,
             floor=session.floor,
+            advance=session.advance,
             change=self._changes,
         )
 
     def report(self) -> None:
         """Bring words and tables up to date."""
         self.scene.driver.description = self.words
-        self._table.value = "<p>On the left above: the effectors of dls.</p>" + table(self.session)
+        whose = f"<p>On the left above: the effectors of {html.escape(self.session.method)}.</p>"
+        self._table.value = whose + table(self.session)
 
     def _obey(self, name: str) -> None:
         session, values = self.session, self.values
         if name == "motion":
-            session.gait = gait.MOTIONS[values["motion"]]
-            self.controls["speed"].value = session.gait.speed
+            session.gait = other_motion(session, values["motion"], self._first)
+            speed = self.controls["speed"]
+            speed.max = max(speed.max, session.gait.speed)
+            speed.value = session.gait.speed
         elif name == "speed":
             session.change(speed=values["speed"])
         else:
-            equal = dict.fromkeys(SOLVERS, radians(values["degrees"]))
-            session.bound(BUSS_CAPS if values["caps"] == OWN else equal)
+            equal = dict.fromkeys(session.methods, radians(values["degrees"]))
+            own = {name: BUSS_CAPS.get(name) for name in session.methods}
+            session.bound(own if values["caps"] == OWN else equal)

@@ -15,10 +15,11 @@ import numpy.typing as npt
 from ikteach.arrays import Array, ArrayLike
 from ikteach.body.rotation import sticks
 from ikteach.view.skin import Ball, Part
+from ikteach.view.stage import FIELD, picture_axes
 
 AMBIENT, DIFFUSE = 0.5, 0.62
 LIGHT = np.array([2.0, 4.0, 3.0]) / np.sqrt(29)  # towards it, in the world
-NEAR = 0.05  # [m]
+NEAR = 0.05  # [units of the eye]
 ANYWHERE = 1e9
 
 
@@ -86,19 +87,19 @@ def box(half: float, colour: str, frame: int) -> list[Solid]:
 class Eye:
     """A camera at `position` (3,) that looks at `at` (3,), with y upwards in the picture.
 
-    size (width, height) [pixels]; field: the angle that the shorter side of a 4 : 3 picture covers
+    size   (width, height) [pixels]
+    field  the angle that the shorter side of the picture covers [degrees]
+    unit   what it measures in [m]: about the size of what it looks at
     """
 
     def __init__(
-        self, position: ArrayLike, at: ArrayLike, size: tuple[int, int], field: float = 45
-    ) -> None:
+        self, position: ArrayLike, at: ArrayLike, size: tuple[int, int], field: float = FIELD,
+        unit: float = 1.0,
+    ) -> None:  # fmt: skip
         eye = np.asarray(position, dtype=float)
-        back = eye - at
-        back /= np.linalg.norm(back)
-        right = np.cross([0.0, 1, 0], back)
-        right /= np.linalg.norm(right)
-        self.view = np.eye(4)  # from the world to x right, y up, z towards the eye
-        self.view[:3, :3] = [right, np.cross(back, right), back]
+        self.axes = picture_axes(np.subtract(eye, at)).T  # x right, y up, z towards the eye
+        self.view = np.eye(4)  # from the world to these, in units from the eye
+        self.view[:3, :3] = self.axes / unit
         self.view[:3, 3] = -self.view[:3, :3] @ eye
         self.size = width, height = size
         self.pixel = 2 * tan(radians(field / 2)) / min(height, width)  # at a distance of 1
@@ -106,7 +107,7 @@ class Eye:
         self.y = ((height / 2 - 0.5 - np.arange(height)) * self.pixel).astype("f4")
 
     def project(self, points: ArrayLike) -> tuple[Array, Array]:
-        """Pixels (..., 2) of points (..., 3) of the world, and how far in front they are (...)."""
+        """Pixels (..., 2) of points (..., 3), and how far in front they are (...) [units]."""
         seen = np.asarray(points, dtype=float) @ self.view[:3, :3].T + self.view[:3, 3]
         away = -seen[..., 2]
         flat = seen[..., :2] / np.maximum(away, NEAR)[..., None] / self.pixel
@@ -124,7 +125,7 @@ def draw(pixels: npt.NDArray[np.uint8], eye: Eye, parts: Sequence[Solid], frames
     centres = np.einsum("nij,nbj->nbi", T[:, :3, :3], balls[..., :3]) + T[:, None, :3, 3]
     stretch = np.linalg.norm(T[:, :3, :3], axis=1).max(axis=-1)
     windows = _windows(eye, centres, balls[..., 3] * stretch[:, None])
-    light = (eye.view[:3, :3] @ LIGHT).astype("f4")
+    light = (eye.axes @ LIGHT).astype("f4")
     Q, W = Q.astype("f4"), W.astype("f4")
     for i, part in enumerate(parts):
         _trace(pixels, nearness, eye, windows[i], Q[i], W[i], part, light)

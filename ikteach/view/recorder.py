@@ -6,16 +6,15 @@ from concurrent.futures import ThreadPoolExecutor
 from math import ceil, inf, isfinite
 from pathlib import Path
 from time import monotonic
-from typing import ClassVar
 
 import ipywidgets as widgets
 
 from ikteach.formats import movie
 from ikteach.motion.session import Session
 from ikteach.view.acting import Actor
-from ikteach.view.closing import close_all
+from ikteach.view.closing import Living
 from ikteach.view.filming import Film, Shot, shot
-from ikteach.view.scene import CAMERAS
+from ikteach.view.stage import sides_of
 from ikteach.view.status import Status
 
 NOW, PAST = "from now on", "what has been"
@@ -28,7 +27,7 @@ class Stopped(Exception):
     """Stop was pressed."""
 
 
-class Recorder(widgets.VBox):  # type: ignore[misc]
+class Recorder(Living, widgets.VBox):  # type: ignore[misc]
     """Film a session to an MP4, AVI or GIF: name, size, rate and seconds, Start and Stop.
 
     Display it in a notebook. The pictures are drawn and encoded by a thread of their own, so that
@@ -36,12 +35,10 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
     `slot` lives at a time: to run a cell again closes the one that it made before.
     """
 
-    _living: ClassVar[dict[str, "Recorder"]] = {}
-
-    def __init__(self, session: Session, *, folder: str | Path = ".", slot: str = "movie") -> None:
-        if slot in self._living:
-            self._living.pop(slot).close()
-        self.session, self.folder, self._slot = session, Path(folder), slot
+    def __init__(
+        self, session: Session, *, folder: str | Path = ".", slot: str | None = "movie"
+    ) -> None:
+        self.session, self.folder, self.slot = session, Path(folder), slot
         self._task: asyncio.Task[None] | None = None
         self._stop = False
         self._act = Actor()
@@ -55,7 +52,8 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
         self.rate = widgets.FloatText(value=30, description="Frames a s", style=LABEL)
         self.seconds = widgets.FloatText(value=5, description="Seconds", style=LABEL)
         self.which = widgets.Dropdown(options=[NOW, PAST], description="Film", style=LABEL)
-        self.side = widgets.Dropdown(options=list(CAMERAS), description="View", style=LABEL)
+        sides = sides_of(session.tree, session.effectors)
+        self.side = widgets.Dropdown(options=sides, description="View", style=LABEL)
         self.replace = widgets.Checkbox(
             value=False, description="replace a file of that name", indent=False
         )
@@ -81,7 +79,6 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
                 self.status,
             ]
         )
-        self._living[slot] = self
         self.status.say("Nothing is recorded yet.")
         try:
             movie.library()
@@ -111,15 +108,9 @@ class Recorder(widgets.VBox):  # type: ignore[misc]
         """Stop: there will be no file."""
         self._stop = True
 
-    def close(self) -> None:
-        """Stop, and free the widgets."""
+    def end(self) -> None:
+        """Stop, as `halt` does."""
         self.halt()
-        if self._living.get(self._slot) is self:
-            del self._living[self._slot]
-        if getattr(self, "comm", None) is None:
-            return
-        close_all(*self.children, self.layout)
-        super().close()
 
     async def _record(self) -> None:
         self.start.disabled, self.stop.disabled = True, False

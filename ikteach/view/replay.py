@@ -16,7 +16,9 @@ from ikteach.arrays import Array, Index
 from ikteach.body import Effectors, Tree
 from ikteach.motion.log import Log
 from ikteach.view.acting import Actor
+from ikteach.view.closing import Living
 from ikteach.view.filming import Film, Shot
+from ikteach.view.lengths import Lengths, decade
 from ikteach.view.picture import Picture
 from ikteach.view.plots import LEAST, STYLES
 from ikteach.view.pointing import Curve, Rows
@@ -39,7 +41,7 @@ class Sketch:
 
     def __init__(
         self, tree: Tree, effectors: Effectors, *, size: tuple[int, int] = (480, 400),
-        side: str = "three-quarter",
+        side: str | None = None,
     ) -> None:  # fmt: skip
         self._film = Film(tree, effectors, size=size, side=side)
         self.widget = Picture(alt="A figure; the line under it says what it does.")
@@ -52,20 +54,23 @@ class Sketch:
         self.widget.png = out.getvalue()
 
 
-class Replay(widgets.VBox):  # type: ignore[misc]
+class Replay(Living, widgets.VBox):  # type: ignore[misc]
     """A scrubber over a run: play and pause, a slider by tick, an error plot and a table.
 
     run    a `Log`: of a session (`session.log()`), or loaded from its files
     scene  what is told the poses; if there is none, a `Sketch` in this widget is
+    slot   only one of a slot lives at a time: to run a cell again closes the older one
 
     Everything is reached with the keyboard: the slider, the plot (left and right) and the rows of
     the table (up and down) all mean the same tick, `at`.
     """
 
-    def __init__(self, run: Log, scene: Shows | None = None) -> None:
+    def __init__(
+        self, run: Log, scene: Shows | None = None, *, slot: str | None = "replay"
+    ) -> None:
         if not len(run):
             raise ValueError("there is nothing to replay: no tick is in the log yet")
-        self.run, self.at = run, 0
+        self.run, self.at, self.slot = run, 0, slot
         self._sketch = Sketch(run.tree, run.effectors) if scene is None else None
         self.scene: Any = self._sketch or scene
         self._wanted = 0
@@ -105,15 +110,10 @@ class Replay(widgets.VBox):  # type: ignore[misc]
             self._wanted = tick
             self._act(self._arrive)
 
-    def close(self) -> None:
-        """Stop playing, and free the widgets."""
+    def end(self) -> None:
+        """Stop playing."""
         if self._task is not None:
             self._task.cancel()
-        if getattr(self, "comm", None) is None:
-            return
-        for one in (self.playing, self.slider, *self.children):
-            one.close()
-        super().close()
 
     def _arrive(self) -> None:
         if self.at != self._wanted:
@@ -136,7 +136,7 @@ class Replay(widgets.VBox):  # type: ignore[misc]
                 f"tick {tick}, {at:.2f} s" for tick, at in zip(run.tick, run.clock, strict=True)
             ]
         with self.rows.hold_sync():
-            far = [f"{name} [cm]" for name in run.effectors.names]
+            far = [f"{name} [{_length(run).name}]" for name in run.effectors.names]
             self.rows.header = ["tick", "clock [s]", "method", *far, "what changed"]
             self.rows.rows = _table(run, columns, error)
         self._draw()
@@ -186,8 +186,9 @@ class Replay(widgets.VBox):  # type: ignore[misc]
         self.slider.value = self.curve.chosen = self.rows.chosen = self.at
         if aloud:
             run, t, i = self.run, self.at, self._columns[self.at]
+            length = _length(run)
             far = ", ".join(
-                f"{name} {100 * d:.1f} cm"
+                f"{name} {length(d)}"
                 for name, d in zip(run.effectors.names, run.error[t, i], strict=True)
             )
             self.words.say(
@@ -201,10 +202,11 @@ def error_picture(run: Log, error: Array) -> tuple[bytes, list[float]]:
     figure = Figure(figsize=(9, 2.5), dpi=100, layout="constrained")
     canvas = FigureCanvasAgg(figure)
     axes = figure.subplots()
+    least = LEAST * decade(run.tree, run.effectors)
     for i, name in enumerate(run.effectors.names):
         colour, style = EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)], STYLES[i % len(STYLES)]
         axes.semilogy(
-            run.clock, np.maximum(error[:, i], LEAST), style, color=colour, label=name, lw=1.6
+            run.clock, np.maximum(error[:, i], least), style, color=colour, label=name, lw=1.6
         )
     changes = [e.tick * run.dt for e in run.events if e.run == _last_run(run)]
     changes = [at for at in changes if run.clock[0] <= at <= run.clock[-1]]
@@ -227,12 +229,18 @@ def error_picture(run: Log, error: Array) -> tuple[bytes, list[float]]:
 
 def error_words(run: Log, error: Array) -> str:
     """The plot in words."""
+    length = _length(run)
     each = "; ".join(
-        f"{name} {100 * one.mean():.1f} cm on average, at most {100 * one.max():.1f} cm at "
+        f"{name} {length(one.mean())} on average, at most {length(one.max())} at "
         f"{run.clock[one.argmax()]:.2f} s"
         for name, one in zip(run.effectors.names, error.T, strict=True)
     )
     return f"Distance to target from {run.clock[0]:.2f} to {run.clock[-1]:.2f} s: {each}."
+
+
+def _length(run: Log) -> Lengths:
+    """The unit in which distances of the run are read."""
+    return Lengths.of(run.tree, run.effectors)
 
 
 def _last_run(run: Log) -> int:
@@ -251,11 +259,11 @@ def _table(run: Log, columns: Index, error: Array) -> list[list[str]]:
     for event in run.events:
         if event.run == _last_run(run):
             changed.setdefault(event.tick, []).append(str(event))
-    notes = _at_rows(run, changed)
+    notes, length = _at_rows(run, changed), _length(run)
     return [
         [
             str(run.tick[t]), f"{run.clock[t]:.2f}", run.methods[columns[t]],
-            *(f"{100 * d:.2f}" for d in error[t]), "; ".join(notes.get(t, [])),
+            *(length.number(d, 2) for d in error[t]), "; ".join(notes.get(t, [])),
         ]
         for t in range(len(run))
     ]  # fmt: skip

@@ -4,7 +4,6 @@ Every frame goes to the page as one message of the driver: a matrix for each thi
 """
 
 from collections.abc import Sequence
-from math import radians, tan
 from typing import Any
 
 import ipywidgets as widgets
@@ -17,29 +16,30 @@ from ikteach.body.rotation import sticks
 from ikteach.names import unknown
 from ikteach.view import flesh, shapes, solids
 from ikteach.view.cameras import Cameras
-from ikteach.view.closing import close_all
+from ikteach.view.closing import Living, close_all
 from ikteach.view.driver import Driver, Move
 from ikteach.view.fused import Piece, fused, shifted
 from ikteach.view.overlays import MAKERS, Layer
 from ikteach.view.picture import Still
-from ikteach.view.skin import DARK, EFFECTOR_COLOURS, GREY, LIGHT, SHIRT, Part, skin_of
+from ikteach.view.skin import DARK, EFFECTOR_COLOURS, GREY, LIGHT, SHIRT, Part
 from ikteach.view.solids import node
-from ikteach.view.stage import CAMERAS, FIELD, LAYERS, SQUARE, Stage
+from ikteach.view.stage import CAMERAS, FIELD, LAYERS, Stage
 from ikteach.view.still import StillScene
 
 __all__ = ["CAMERAS", "LAYERS", "Scene"]
 
 STILL = np.eye(3, 4)
-UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0]])  # a floor turned into a wall
 
 
-class Scene:
+class Scene(Living):
     """One or several figures with k targets each; a `stage.View`. `widget` is what to display.
 
     names    one figure for each, with its name over its head (a lone figure needs none)
     apart    how far they stand from each other [m]; 0 lays them over each other, in which case
              they share the targets, and all but the first can be seen through
     dark     light on dark, or dark on light
+    slot     only one of a slot lives at a time: to run a cell again closes the older one. Name it
+             for a second scene in a notebook
 
     Left targets are balls, right ones boxes, so that colour is not the only sign; a grey rod joins
     each effector to its target. A figure in a plane stands before a wall of squares instead of on
@@ -49,7 +49,9 @@ class Scene:
     def __init__(
         self, tree: Tree, effectors: Effectors, *, names: Sequence[str] = ("",),
         apart: float | None = None, width: int = 540, height: int = 480, dark: bool = False,
+        slot: str | None = "scene",
     ) -> None:  # fmt: skip
+        self.slot = slot
         self.tree, self.effectors = tree, effectors
         self.stage = stage = Stage(tree, effectors, names, apart)
         unit, f, n, k = stage.unit, len(names), len(tree), len(effectors)
@@ -70,10 +72,7 @@ class Scene:
         ]  # fmt: skip
 
         aspect = width / height
-        scale = max(unit, stage.spread / (aspect * tan(radians(FIELD / 2)) * 2.7))
-        self.camera = three.PerspectiveCamera(
-            fov=FIELD, aspect=aspect, near=0.05 * unit, far=40 * max(scale, 1)
-        )
+        self.camera = three.PerspectiveCamera(fov=FIELD, aspect=aspect)
         self.scene = three.Scene(
             children=[*(thing for thing, _ in self._moves), *self._names(), *solids.lights()],
             background=DARK if dark else LIGHT,
@@ -82,7 +81,7 @@ class Scene:
             scene=self.scene, camera=self.camera, antialias=False, width=width, height=height,
             controls=[three.OrbitControls(controlling=self.camera)],
         )  # fmt: skip
-        self.cameras = Cameras(self.renderer, aspect, scale)
+        self.cameras = Cameras(self.renderer, stage, aspect)
         self.look_from(stage.side)
         self.driver = Driver(self.renderer, description=stage.words)
         self.driver.on_sign = self._greet
@@ -113,7 +112,7 @@ class Scene:
             self.show(**self._last) if self._last else None
 
     def look_from(self, side: str) -> None:
-        """Put the camera to one of `CAMERAS`, or to "plane": along −z."""
+        """Put the camera to one of `CAMERAS`, or to "plane": along the normal of its plane."""
         self.cameras.look_from(side)
 
     @property
@@ -143,7 +142,7 @@ class Scene:
         at = now.targets + places
         ground, joints, marks, gaps = self._parts
         frame = self._blank.copy()
-        frame[ground] = self._ground(now.floor, advance)
+        frame[ground] = stage.ground(now.floor, advance)
         frame[joints, :, :3] = now.orientations.reshape(-1, 3, 3)
         frame[joints, :, 3] = (now.positions + places).reshape(-1, 3)
         frame[marks, :, 3] = at[: self._sets].reshape(-1, 3)
@@ -169,7 +168,7 @@ class Scene:
         """What was shown last as a picture, which needs no kernel to be seen."""
         picture = StillScene(
             self.tree, self.effectors, names=self.stage.names, apart=self.stage.apart,
-            dark=self._dark, width=self.renderer.width, height=self.renderer.height,
+            dark=self._dark, width=self.renderer.width, height=self.renderer.height, slot=None,
         )  # fmt: skip
         try:
             for name in self._on:
@@ -179,10 +178,6 @@ class Scene:
             return Still(picture.png, self.driver.description or picture.alt)
         finally:
             picture.close()
-
-    def close(self) -> None:
-        """Free what the page and the kernel hold of this scene, and of what is mounted in it."""
-        close_all(self.widget, *self.cameras.parts)
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
         """The live widget, and beside it a still for places without a kernel."""
@@ -207,19 +202,12 @@ class Scene:
             rows += layer.rows
         self.driver.move(moves, rows)
 
-    def _ground(self, floor: float, advance: float) -> Array:
-        if self.stage.planar:
-            return UPRIGHT + [[0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, -0.2 * self.stage.unit]]
-        glide = -(advance % (SQUARE * self.stage.unit))
-        return STILL + [[0, 0, 0, 0], [0, 0, 0, floor], [0, 0, 0, glide]]
-
     def _body(self, f: int, ground: int, joint: int) -> Move:
         """The flesh, or rods, of figure f, moved by the rows of its ground and its joints."""
         stage = self.stage
         rows: dict[str | None, int] = {name: joint + j for j, name in enumerate(self.tree.names)}
         rows[None] = ground
-        skin = skin_of(self.tree, self.effectors, 0.03 * stage.unit)
-        parts = [self._coloured(part, f) for part in skin]
+        parts = [self._coloured(part, f) for part in stage.skin]
         pieces = flesh.pieces(parts, rows, flesh.FINE if len(stage) == 1 else flesh.PLAIN)
         return fused(pieces, opacity=0.5 if stage.overlaid and f > 0 else 1.0)
 
@@ -231,12 +219,18 @@ class Scene:
             for f, name in enumerate(names)
             if name
             for label in solids.labels(
-                name, self._colour(f), 0.13 * stage.unit, [stage.places[f] + stage.name_at(f)]
+                brief(name), self._colour(f), 0.13 * stage.unit,
+                [stage.places[f] + stage.name_at(f)],
             )
-        ]
+        ]  # fmt: skip
 
     def _colour(self, f: int) -> str:
         return SHIRT if len(self.stage) == 1 else EFFECTOR_COLOURS[f % len(EFFECTOR_COLOURS)]
 
     def _coloured(self, part: Part, f: int) -> Part:
         return part._replace(colour=self._colour(f)) if part.colour == SHIRT else part
+
+
+def brief(name: str, letters: int = 16) -> str:
+    """A name as it fits over a head."""
+    return name if len(name) <= letters else f"{name[: letters - 1]}…"

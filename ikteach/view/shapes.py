@@ -35,7 +35,8 @@ def revolved(outline: ArrayLike, around: int) -> Shape:
     a = np.arange(points[..., 0].size).reshape(y.shape)[:-1, :-1].ravel()
     b = a + around + 1
     above, below = np.stack([a, a + 1, b], -1), np.stack([a + 1, b + 1, b], -1)
-    at_pole = np.repeat(np.isclose(radius[:, 0], 0, atol=1e-8), around)  # there, one is a line
+    on_axis = radius[:, 0] <= 1e-8 * radius.max()
+    at_pole = np.repeat(on_axis, around)  # there, one is a line
     corners = [above[~at_pole[:-around]], below[~at_pole[around:]]]
     return Shape(points.reshape(-1, 3), np.concatenate(corners))
 

@@ -11,7 +11,7 @@ from matplotlib.patches import Ellipse
 
 from ikteach.arrays import Array
 from ikteach.view.skin import DARK, LIGHT, Ball, Limb, Part
-from ikteach.view.stage import FIELD, Stage, picture_axes, side_of
+from ikteach.view.stage import FIELD, Stage, picture_axes
 
 DPI = 100
 BEHIND, BEFORE = -100.0, 100.0  # drawn before, or after, all that is sorted by depth
@@ -21,17 +21,17 @@ class Sheet:
     """A matplotlib picture that is given points in space."""
 
     def __init__(self, side: str, size: tuple[float, float], stage: Stage, dark: bool) -> None:
-        eye = side_of(side)
-        half = float(np.linalg.norm(eye)) * tan(radians(FIELD / 2)) * stage.unit
+        self._middle = stage.extent.centre
+        back = stage.eye(side, size[0] / size[1]) - self._middle
+        half = float(np.linalg.norm(back)) * tan(radians(FIELD / 2))  # of the height [m]
         wide = half * size[0] / size[1]
-        zoom = max(1.0, stage.spread / wide)
-        self._axes_of_picture = picture_axes(eye)
-        self._points = size[1] * 72 / (2 * half * zoom)  # points a metre
+        self._axes_of_picture = picture_axes(back)
+        self._points = size[1] * 72 / (2 * half)  # points a metre
         self.faint, ink = ("#3a434d", "#e8ebee") if dark else ("#cbd2d9", "#20262d")
         self._ink = ink
         self._figure = Figure(figsize=size, dpi=DPI, facecolor=DARK if dark else LIGHT)
         self._axes: Axes = self._figure.add_axes((0, 0, 1, 1))
-        self._axes.set(xlim=(-wide * zoom, wide * zoom), ylim=(-half * zoom, half * zoom))
+        self._axes.set(xlim=(-wide, wide), ylim=(-half, half))
         self._axes.set_axis_off()
 
     def png(self) -> bytes:
@@ -106,7 +106,7 @@ class Sheet:
     def arrow(self, start: Array, end: Array, colour: str) -> None:
         """An arrow."""
         a, b = self._see(np.array([start, end]))[:, :2]
-        if np.linalg.norm(b - a) > 1e-6:
+        if np.linalg.norm(b - a) * self._points > 0.1:  # an arrow that can be seen
             look = {"arrowstyle": "-|>", "color": colour, "lw": 2, "shrinkA": 0, "shrinkB": 0}
             self._axes.annotate("", b, a, arrowprops=look, zorder=BEFORE)
 
@@ -124,4 +124,4 @@ class Sheet:
 
     def _see(self, points: Array) -> Array:
         """x, y in the picture and nearness to the eye, (..., 3)."""
-        return points @ self._axes_of_picture
+        return (points - self._middle) @ self._axes_of_picture

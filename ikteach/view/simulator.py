@@ -29,7 +29,7 @@ class CursorScene(Scene):
     """A scene with one target, the cursor: white with a word over it, or red with another."""
 
     def __init__(self, session: Reaching, **options: Any) -> None:
-        super().__init__(session.tree, _cursor(session), dark=True, **options)
+        super().__init__(session.tree, _cursor(session), dark=True, slot=None, **options)
         unit = self.stage.unit
         self._words = [
             word
@@ -68,13 +68,17 @@ class Simulator(Live):
     scene: CursorScene
 
     def __init__(
-        self, session: Reaching | None = None, *, slot: str = "reach", **options: Any
+        self, session: Reaching | None = None, *, slot: str | None = "reach", **options: Any
     ) -> None:
         session = session if session is not None else Reach(**options)
         super().__init__(session, CursorScene(session), slot)
         self._known = session.cursor  # the one that the handles and sliders know of
         self.targets = Targets(
-            self.scene, session.cursor[None], low=session.room[:1], high=session.room[1:]
+            self.scene,
+            session.cursor[None],
+            low=session.room[:1],
+            high=session.room[1:],
+            slot=None,
         )
         self.targets.on_change(self.guarded(lambda _, place: self._put(place)))
         self._cursor, self._table = widgets.HTML(), widgets.HTML()
@@ -99,11 +103,6 @@ class Simulator(Live):
     def settled(self) -> bool:
         """Whether nothing would move any more."""
         return bool(self.session.settled)
-
-    def close(self) -> None:
-        """Stop the loop and free all that the page and the kernel hold of it."""
-        self.targets.close()
-        super().close()
 
     @property
     def words(self) -> str:

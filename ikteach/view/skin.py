@@ -1,9 +1,15 @@
 """What a figure looks like: solid parts, each fixed to a joint. Sizes in metres, nothing solved."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
+import numpy as np
+
+from ikteach.arrays import Array, Mask
 from ikteach.body import Effectors, Tree
+from ikteach.body.extent import Extent
+from ikteach.body.figures import Figure, human, simulator
+from ikteach.body.tree import GROUND
 
 Vector = Sequence[float]
 
@@ -89,33 +95,98 @@ def _limbs(side: str, shoulder: str, hip: str) -> list[Part]:
     ]
 
 
-def stick_skin(tree: Tree, effectors: Effectors, thick: float = 0.03) -> list[Part]:
-    """Rods between joints, and from joints to effectors, for any tree."""
+class Flesh(NamedTuple):
+    """A human's skin for a tree that is shaped like a human's, of any size and in any place.
+
+    parts  what it is made of
+    unit   how many times as large as a human it is
+    base   (3,) where its pelvis is [m]
+    """
+
+    parts: list[Part]
+    unit: float
+    base: Array
+
+    @property
+    def extent(self) -> Extent:
+        """The ball that holds all its poses; narrower than what is known of any body."""
+        return Extent(self.base + [0, 0.11 * self.unit, 0], 1.175 * self.unit)
+
+
+def flesh_of(tree: Tree) -> Flesh | None:
+    """The human's or the simulator's skin, if one of them fits the tree, whatever its names."""
+    for figure, skin in SKINS:
+        like = figure().tree
+        if len(tree) == len(like) and _roots(tree).sum() == _roots(like).sum():
+            unit = _links(tree) / _links(like)
+            base = tree.offsets[_roots(tree)].mean(axis=0)
+            base = base - unit * like.offsets[_roots(like)].mean(axis=0)
+            named = _matched(tree, like, unit, base)
+            if named:
+                return Flesh([_placed(part, named, unit, base) for part in skin()], unit, base)
+    return None
+
+
+SKINS: tuple[tuple[Callable[[], Figure], Callable[[], list[Part]]], ...] = (
+    (human, human_skin),
+    (simulator, simulator_skin),
+)
+
+
+def _roots(tree: Tree) -> Mask:
+    """Which joints hang from the ground, (n,)."""
+    return tree.parents == GROUND
+
+
+def _links(tree: Tree) -> float:
+    """The length of all links together [m]."""
+    return float(np.linalg.norm(tree.offsets[~_roots(tree)], axis=-1).sum())
+
+
+def _matched(tree: Tree, like: Tree, unit: float, base: Array) -> dict[str, str]:
+    """For each joint of `like` the name of the one that sits there in `tree`; {} if one does not.
+
+    A joint's parents are matched before it, so that branches are not mistaken for each other.
+    """
+    row = {GROUND: GROUND}
+    for j, parent in enumerate(like.parents.tolist()):
+        offset = unit * like.offsets[j] + (base if parent == GROUND else 0)
+        near = np.linalg.norm(tree.offsets - offset, axis=-1) <= 1e-3 * unit
+        along = np.linalg.norm(tree.axes - like.axes[j], axis=-1) <= 1e-3
+        fit = np.flatnonzero((tree.parents == row[parent]) & near & along & ~tree.slide)
+        if len(fit) != 1:
+            return {}
+        row[j] = int(fit[0])
+    return {like.names[j]: tree.names[i] for j, i in row.items() if j != GROUND}
+
+
+def _placed(part: Part, named: dict[str, str], unit: float, base: Array) -> Part:
+    """The part in that size, on the joint of that name; what is on the ground, at the base."""
+
+    def at(point: Vector) -> Vector:
+        return (unit * np.asarray(point) + (base if part.joint is None else 0)).tolist()
+
+    joint = None if part.joint is None else named[part.joint]
+    if isinstance(part, Ball):
+        radii = [unit * radius for radius in part.radii]
+        return Ball(joint, at(part.centre), radii, part.colour)
+    return Limb(
+        joint, at(part.start), at(part.end), unit * part.thick, unit * part.thin, part.colour
+    )
+
+
+def stick_skin(tree: Tree, effectors: Effectors, thick: float) -> list[Part]:
+    """Rods between joints, and from joints to effectors, so thick [m], for any tree."""
     parts: list[Part] = []
+    base = tree.offsets[_roots(tree)].mean(axis=0)
     for j, name in enumerate(tree.names):
-        parent = tree.names[tree.parents[j]] if tree.parents[j] >= 0 else None
+        fixed = tree.parents[j] == GROUND
+        parent, start = (None, base) if fixed else (tree.names[tree.parents[j]], np.zeros(3))
         parts.append(Ball(name, (0, 0, 0), (1.4 * thick,) * 3, JOINTS))
-        if tree.offsets[j].any():
-            parts.append(Limb(parent, (0, 0, 0), tree.offsets[j].tolist(), thick, thick, SHIRT))
+        if np.linalg.norm(tree.offsets[j] - start) > 1e-3 * thick:
+            end = tree.offsets[j].tolist()
+            parts.append(Limb(parent, start.tolist(), end, thick, thick, SHIRT))
     for joint, offset in zip(effectors.joints, effectors.offsets, strict=True):
-        if offset.any():
+        if np.linalg.norm(offset) > 1e-3 * thick:
             parts.append(Limb(tree.names[joint], (0, 0, 0), offset.tolist(), thick, thick, SHIRT))
     return parts
-
-
-def body_skin(tree: Tree) -> list[Part]:
-    """The human's or the simulator's skin, if one of them fits the tree; else none."""
-    for parts in human_skin(), simulator_skin():
-        if {part.joint for part in parts} - {None} <= set(tree.names):
-            return parts
-    return []
-
-
-def has_human_skin(tree: Tree) -> bool:
-    """Whether it looks like a human."""
-    return bool(body_skin(tree))
-
-
-def skin_of(tree: Tree, effectors: Effectors, thick: float = 0.03) -> list[Part]:
-    """The skin of a human if it fits the tree, else rods so thick."""
-    return body_skin(tree) or stick_skin(tree, effectors, thick)

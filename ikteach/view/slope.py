@@ -12,6 +12,7 @@ from ikteach.motion import ignore, step
 from ikteach.motion.experiment import downhill
 from ikteach.solvers import transpose
 from ikteach.view.bench import Bench, Canvas, Shown, slider
+from ikteach.view.closing import making
 from ikteach.view.skin import BLUE, GREEN, ORANGE, RED
 
 START = np.array([0.9, -0.7, -0.6])  # [rad] a bent arm
@@ -95,6 +96,7 @@ class Slope:
         return points[:, :2].T
 
 
+@making()
 def slope_bench() -> Bench:
     """The bench of chapter 3. Sliders: the gain, and where the target is."""
     slope = Slope()

@@ -13,6 +13,7 @@ from ikteach.motion import gait, step
 from ikteach.solvers import sdls
 from ikteach.solvers.response import Directions, directions, factors, filtered
 from ikteach.view.bench import Bench, Canvas, Shown, log_slider, slider
+from ikteach.view.closing import making
 from ikteach.view.plots import bones
 from ikteach.view.skin import BLUE, EFFECTOR_COLOURS, GREEN, ORANGE
 
@@ -132,6 +133,7 @@ def _number(value: float) -> str:
     return "none" if np.isnan(value) else f"{value:.3g}"
 
 
+@making()
 def spectrum_bench() -> Bench:
     """The bench of chapter 6."""
     controls = {

@@ -5,31 +5,38 @@ draws the same things as a picture, for places without WebGL or without a kernel
 poses and arrays, and solves nothing.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from math import atan, cos, radians, sin, tan
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike
 from ikteach.body import Effectors, Frames, Tree, forward, locate
+from ikteach.body.extent import extent
+from ikteach.body.tree import GROUND
 from ikteach.names import unknown
-from ikteach.view.skin import has_human_skin
+from ikteach.view.skin import flesh_of, stick_skin
 
 LAYERS = (
     "world axes", "joint axes", "footprints", "trails", "columns of J", "ellipsoid", "reach",
 )  # fmt: skip
 SQUARE = 0.5  # side of a square of the floor under a human [m]
 SHOWN_AT = 0.5  # length on the screen of 1 m/rad [m]: columns of J, axes of the ellipsoid
+REACH = 1.2  # radius of the ball that holds all poses of a body of unit 1, about a human's [m]
 
 
-CAMERAS = {  # where from, seen from the pelvis of a human
+CAMERAS = {  # the ways from the figure to the named cameras
     "three-quarter": (1.65, 0.3, 2.3),
-    "front": (0.0, 0.0, 2.9),
-    "side": (2.9, 0.0, 0.01),
-    "top": (0.0, 2.9, 0.05),
+    "front": (0.0, 0.0, 1.0),
+    "side": (1.0, 0.0, 0.003),
+    "top": (0.0, 1.0, 0.017),
 }
-PLANE = {"plane": (0.0, 0.0, 3.1)}  # along −z: how a planar figure is looked at
+PLANE = "plane"  # along the normal of its plane: how a planar figure is looked at
 FIELD = 45.0  # [degrees] from the lower to the upper edge of the picture
+ROOM = 1.08  # radius of the ball that cameras see, as a share of the one that holds all poses
+FLAT = 1e-6  # sine of the angle by which a direction in a plane may miss it
+TINY = 1e-150  # keeps 0 / 0 away where a link has no length
 
 
 class View(Protocol):
@@ -99,9 +106,12 @@ class Now(NamedTuple):
 class Stage:
     """Figures of one tree, named, side by side (`apart` > 0) or in one place (`apart` = 0).
 
-    places  (f, 3)  where each stands [m]
-    unit    the size of the figure against a human's: thickness of rods, sizes of marks
-    planar  whether it lives in the plane z = const
+    places  (f, 3)  where each stands [m], from where one alone would
+    extent  the ball that holds all poses of one: what cameras look at
+    unit    the size of a figure against a human's: thickness of rods, sizes of marks
+    base    (3,) where it is fixed to the ground, in the middle [m]
+    normal  (3,) of the plane that it lives in, towards the eye; None if it lives in no plane
+    skin    its solid parts
     """
 
     def __init__(
@@ -111,18 +121,32 @@ class Stage:
         if not names:
             raise ValueError("a scene needs at least one figure")
         self.tree, self.effectors, self.names = tree, effectors, list(names)
-        self.human = has_human_skin(tree)
-        self.planar = _planar(tree, effectors)
-        self.unit = 1.0 if self.human else longest(tree, effectors) / 1.2
-        self.apart = (1.5 if self.human else 2.4) * self.unit if apart is None else float(apart)
+        flesh = flesh_of(tree)
+        self.human = flesh is not None
+        if flesh is not None:
+            self.extent, self.unit, self.base = flesh.extent, flesh.unit, flesh.base
+            self.skin = flesh.parts
+        else:
+            self.extent = extent(tree, effectors)
+            self.unit = self.extent.radius / REACH
+            self.base = tree.offsets[tree.parents == GROUND].mean(axis=0)
+            self.skin = stick_skin(tree, effectors, 0.03 * self.unit)
+        self.normal = plane_of(tree, effectors)
+        self.apart = (1.5 if self.human else 2 * REACH) * self.unit if apart is None else apart
         self.places = np.zeros((len(names), 3))
         self.places[:, 0] = self.apart * (np.arange(len(names)) - (len(names) - 1) / 2)
         rest = forward(tree, tree.rest)
         points = np.concatenate([rest.positions, locate(rest, effectors)])
         self.floor = float(points[:, 1].min()) - 0.06 * self.unit
+        self._stands = bool(points[:, 1].mean() > self.extent.centre[1])
 
     def __len__(self) -> int:
         return len(self.names)
+
+    @property
+    def planar(self) -> bool:
+        """Whether the figure lives in a plane."""
+        return self.normal is not None
 
     @property
     def overlaid(self) -> bool:
@@ -136,23 +160,67 @@ class Stage:
         return "plane" if self.planar else "front" if beside else "three-quarter"
 
     @property
-    def spread(self) -> float:
-        """Half the width that all figures need [m]."""
-        return float(self.places[-1, 0]) + 1.2 * self.unit
+    def free(self) -> Array:
+        """1 for each coordinate (3,) in which anything can move, 0 for that across its plane."""
+        across = np.zeros(3) if self.normal is None else abs(self.normal)
+        return np.where(across > 1 - FLAT, 0.0, 1.0)
+
+    def eye(self, side: str, aspect: float) -> Array:
+        """Where a camera stands that sees all poses of all figures from a named side, (3,) [m].
+
+        It looks at the middle of them. aspect: width over height of its picture, of which `FIELD`
+        is the height. LookupError for an unknown side.
+        """
+        axes = picture_axes(self._towards(side))
+        tall = radians(FIELD / 2)
+        wide = atan(aspect * tan(tall))
+        x, y, z = (self.places @ axes).T
+        # A ball is between two edges of the picture, each α from its middle, if from the plane of
+        # eye and edge it is as far as its radius.
+        r = ROOM * self.extent.radius
+        far = [(r + abs(across) * cos(a)) / sin(a) + z for across, a in ((x, wide), (y, tall))]
+        return self.extent.centre + float(np.max(far)) * axes[:, 2]
+
+    def _towards(self, side: str) -> Array:
+        """The way from the figure to a named camera; LookupError for an unknown one."""
+        ways = {**CAMERAS, PLANE: CAMERAS["front"] if self.normal is None else self.normal}
+        if side not in ways:
+            raise LookupError(unknown("camera", side, ways))
+        return np.asarray(ways[side])
+
+    def ground(self, floor: float, advance: float) -> Array:
+        """[R | p] (3, 4) that lays squares of the plane y = 0 under the figure, or behind it.
+
+        They are a floor in that height [m], over which the figure has advanced [m], or a wall
+        behind a figure in a plane.
+        """
+        if self.normal is None:
+            x, _, z = self.extent.centre
+            p = [x, floor, z - advance % (SQUARE * self.unit)]
+            return np.column_stack([np.eye(3), p])
+        right, up, back = picture_axes(self.normal).T
+        return np.column_stack([right, back, -up, self.extent.centre - 0.2 * self.unit * back])
 
     @property
     def words(self) -> str:
         """What can be seen, in words."""
-        what = "human" if self.human else "planar figure" if self.planar else "figure"
         named = [name for name in self.names if name]
-        who = f"{len(self)} {what}s" if len(self) > 1 else f"A {what}"
-        who += f" ({', '.join(named)})" if named else ""
+        who = self.crowd + (f" ({', '.join(named)})" if named else "")
         return f"{who} with targets for {', '.join(self.effectors.names)}."
 
-    def name_at(self, f: int) -> list[float]:
-        """Where the name of figure f is, from its place: over its head, or in a list beside it."""
-        x, y = (-0.75, 0.75 - 0.16 * f) if self.overlaid else (0.0, 0.9 if self.human else 1.3)
-        return [self.unit * x, self.unit * y, 0.0]
+    @property
+    def crowd(self) -> str:
+        """How many figures of what kind there are, in words."""
+        what = "human" if self.human else "planar figure" if self.planar else "figure"
+        return f"{len(self)} {what}s" if len(self) > 1 else f"A {what}"
+
+    def name_at(self, f: int) -> Array:
+        """Where the name of figure f is, from its place: over it, under it, or in a list."""
+        if self.overlaid:
+            x, y = -0.75, 0.65 - 0.16 * f
+        else:  # where the figure is not, at rest
+            x, y = 0.0, 0.8 if self.human else -1.1 if self._stands else 1.1
+        return self.extent.centre + self.unit * np.array([x, y, 0.0])
 
     def now(
         self, theta: Array, targets: Array, floor: float | None, advance: float, effector: int,
@@ -185,6 +253,15 @@ class Stage:
             [(np.asarray(c, dtype=float), inner, outer) for c, inner, outer in reach],
         )
 
+    def arrows(self, columns: Array) -> Array:
+        """The columns of J (..., 3, n) as arrows (..., n, 3) [m]: `SHOWN_AT` for 1 m/rad.
+
+        The column of a slide has no unit: 1 m/m is as long as 1 m/rad is on a human, in the
+        proportions of this body.
+        """
+        long = np.where(self.tree.slide, SHOWN_AT * self.unit, SHOWN_AT)
+        return long[:, None] * columns.swapaxes(-1, -2)
+
     def _each(self, what: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:
         """The values, one row a figure; one row for all is given to each."""
         array = np.asarray(values, dtype=float)
@@ -193,14 +270,6 @@ class Stage:
         if array.shape == shape[1:]:
             return array[None].repeat(shape[0], axis=0)
         raise ValueError(f"{what} must have the shape {shape[1:]} or {shape}, not {array.shape}")
-
-
-def side_of(name: str) -> Array:
-    """Where a named camera stands, seen from the pelvis; LookupError for an unknown one."""
-    places = CAMERAS | PLANE
-    if name not in places:
-        raise LookupError(unknown("camera", name, places))
-    return np.array(places[name])
 
 
 def picture_axes(back: Array) -> Array:
@@ -212,19 +281,28 @@ def picture_axes(back: Array) -> Array:
     return np.stack([x, np.cross(z, x), z], axis=-1)
 
 
-def chains(tree: Tree, effectors: Effectors) -> Iterator[Array]:
-    """The links (links, 3) from the ground to each effector, at θ = 0 [m]."""
-    for joint, offset in zip(effectors.joints, effectors.offsets, strict=True):
-        yield np.array([tree.offsets[j] for j in tree.above(int(joint))][::-1] + [offset])
+def sides_of(tree: Tree, effectors: Effectors) -> list[str]:
+    """The named sides from which a body can be looked at, the usual one first."""
+    return [*CAMERAS] if plane_of(tree, effectors) is None else [PLANE, *CAMERAS]
 
 
-def longest(tree: Tree, effectors: Effectors) -> float:
-    """The length of the longest chain [m]."""
-    lengths = [np.linalg.norm(links, axis=1).sum() for links in chains(tree, effectors)]
-    return float(max(*lengths, 1e-3))
+def plane_of(tree: Tree, effectors: Effectors) -> Array | None:
+    """The normal (3,) of the plane that a body lives in, towards `CAMERAS`; None if in none.
 
-
-def _planar(tree: Tree, effectors: Effectors) -> bool:
-    in_plane = np.where(tree.slide, tree.axes[:, 2] == 0, abs(tree.axes[:, 2]) == 1)
-    flat = not (tree.offsets[:, 2].any() or effectors.offsets[:, 2].any())
-    return bool(in_plane.all()) and flat
+    Its hinges turn about the normal; its links and slides lie in the plane.
+    """
+    roots = tree.parents == GROUND
+    fixed = tree.offsets[roots]
+    links = np.concatenate([tree.offsets[~roots], effectors.offsets, fixed - fixed[0]])
+    hinges, slides = tree.axes[~tree.slide], tree.axes[tree.slide]
+    lengths = np.linalg.norm(links, axis=-1, keepdims=True)
+    within = np.concatenate([slides, links / np.maximum(lengths, TINY)])
+    normal = hinges[0] if len(hinges) else np.array([0.0, 0, 1])
+    if not len(hinges) and (abs(within @ normal) > FLAT).any():  # slides in some other plane
+        normal = np.linalg.svd(within)[2][-1]
+    if (abs(within @ normal) > FLAT).any() or (
+        np.linalg.norm(np.cross(hinges, normal), axis=-1) > FLAT
+    ).any():
+        return None
+    towards = float(normal @ CAMERAS["three-quarter"])
+    return -normal if towards < 0 else normal

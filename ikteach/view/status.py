@@ -3,6 +3,8 @@
 import anywidget
 import traitlets
 
+from ikteach.view.closing import Living
+
 _ESM = """
 function render({ model, el }) {
   // Both stay where they are while their words change: only then are changes read out.
@@ -26,7 +28,7 @@ export default { render };
 """
 
 
-class Status(anywidget.AnyWidget):
+class Status(Living, anywidget.AnyWidget):
     """A sentence on what goes on, and one on what went wrong."""
 
     _esm = _ESM

@@ -8,15 +8,16 @@ from ikteach.arrays import Array, ArrayLike
 from ikteach.body import Effectors, Frames, Tree
 from ikteach.names import unknown
 from ikteach.view import skin
-from ikteach.view.closing import close_all
+from ikteach.view.closing import Living
+from ikteach.view.lengths import Lengths
 from ikteach.view.picture import Picture
 from ikteach.view.sheet import BEFORE, BEHIND, DPI, Sheet
 from ikteach.view.skin import EFFECTOR_COLOURS
-from ikteach.view.stage import LAYERS, SHOWN_AT, SQUARE, Now, Stage, side_of
+from ikteach.view.stage import LAYERS, SHOWN_AT, SQUARE, Now, Stage
 from ikteach.view.trails import MARKS, PRINTS, Prints, Trail, feet
 
 
-class StillScene:
+class StillScene(Living):
     """One or several figures with k targets each, drawn by matplotlib; a `stage.View`.
 
     It takes what `scene.Scene` takes. `widget` is a picture with words for those who cannot see
@@ -26,19 +27,20 @@ class StillScene:
     def __init__(
         self, tree: Tree, effectors: Effectors, *, names: Sequence[str] = ("",),
         apart: float | None = None, width: int = 540, height: int = 480, dark: bool = False,
+        slot: str | None = "still",
     ) -> None:  # fmt: skip
+        self.slot = slot
         self.tree, self.effectors = tree, effectors
         self.stage = Stage(tree, effectors, names, apart)
         self._dark = dark
         self._widget: Picture | None = None
         self._png = b""  # of what was shown last, once somebody has asked for it
         self._size = (width / DPI, height / DPI)
-        self._skin = skin.skin_of(tree, effectors, 0.03 * self.stage.unit)
         self._on: set[str] = set()
         self._side = self.stage.side
-        count = (len(self.stage), len(effectors))
-        self._trail = Trail(count, MARKS, 0.05 * self.stage.unit)
-        self._prints = Prints((len(self.stage), len(feet(effectors))), PRINTS)
+        f, unit = len(self.stage), self.stage.unit
+        self._trail = Trail((f, len(effectors)), MARKS, 0.05 * unit)
+        self._prints = Prints((f, len(feet(effectors))), PRINTS, 1e-4 * unit)
         self._now: Now | None = None
 
     @property
@@ -83,8 +85,8 @@ class StillScene:
         self._changed()
 
     def look_from(self, side: str) -> None:
-        """Put the camera to one of `CAMERAS`, or to "plane": along −z."""
-        side_of(side)
+        """Put the camera to one of `CAMERAS`, or to "plane": along the normal of its plane."""
+        self.stage.eye(side, 1.0)
         self._side = side
         self._changed()
 
@@ -109,8 +111,9 @@ class StillScene:
 
     def close(self) -> None:
         """Free the picture."""
+        super().close()
         if self._widget is not None:
-            close_all(self._widget)
+            self._widget.close()
 
     def _repr_mimebundle_(self, **kwargs: object) -> dict[str, object]:
         return {"image/png": self.png, "text/plain": self.alt}
@@ -130,23 +133,20 @@ class StillScene:
 
     def _draw_floor(self, sheet: Sheet, now: Now) -> None:
         side = SQUARE * self.stage.unit
-        marks = side * np.arange(-6, 7)
-        glide = -(now.advance % side)
-        for i in marks:
-            for a, b in (
-                ([i, 0, -6 * side], [i, 0, 6 * side]),
-                ([-6 * side, 0, i], [6 * side, 0, i]),
+        ground = self.stage.ground(now.floor, now.advance)
+        for i in side * np.arange(-6, 7):
+            for ends in (
+                [[i, 0, -6 * side], [i, 0, 6 * side]],
+                [[-6 * side, 0, i], [6 * side, 0, i]],
             ):
-                ends = np.array([a, b]) + [0, now.floor, glide]
-                if self.stage.planar:
-                    ends = np.array([a, b])[:, [0, 2, 1]] - [0, 0, 0.2 * self.stage.unit]
-                sheet.line(ends, sheet.faint, 0.8, BEHIND)
+                there = ends @ ground[:, :3].T + ground[:, 3]
+                sheet.line(there, sheet.faint, 0.8, BEHIND)
 
     def _draw_figure(self, sheet: Sheet, now: Now, f: int) -> None:
         stage, unit = self.stage, self.stage.unit
         place = stage.places[f]
         opacity = 0.45 if stage.overlaid and f > 0 else 1.0
-        for part in self._skin:
+        for part in stage.skin:
             j = None if part.joint is None else stage.tree.index(part.joint)
             R = np.eye(3) if j is None else now.orientations[f, j]
             p = place if j is None else now.positions[f, j] + place
@@ -192,8 +192,9 @@ class StillScene:
         unit = self.stage.unit
         colours = (skin.RED, skin.GREEN, skin.BLUE)
         for way, letter, colour in zip(np.eye(3), "xyz", colours, strict=True):
-            sheet.line(place + np.outer([0, 0.7 * unit], way), colour, 2.5, BEFORE)
-            sheet.words(place + 0.78 * unit * way, letter, colour)
+            at = place + self.stage.base
+            sheet.line(at + np.outer([0, 0.7 * unit], way), colour, 2.5, BEFORE)
+            sheet.words(at + 0.78 * unit * way, letter, colour)
 
     def _joint_axes(self, sheet: Sheet, now: Now, f: int) -> None:
         axes = np.matvec(now.orientations[f], self.stage.tree.axes)
@@ -207,8 +208,8 @@ class StillScene:
 
     def _columns(self, sheet: Sheet, now: Now, f: int, at: Array) -> None:
         if now.columns is not None:
-            for j, column in enumerate(now.columns[f].T):
-                sheet.arrow(at, at + SHOWN_AT * column, _colour(j))
+            for j, way in enumerate(self.stage.arrows(now.columns[f])):
+                sheet.arrow(at, at + way, _colour(j))
 
     def _ellipsoid(self, sheet: Sheet, now: Now, f: int, at: Array) -> None:
         if now.axes is None or now.lengths is None:
@@ -224,11 +225,12 @@ class StillScene:
             sheet.circle(centre + place, inner, skin.ORANGE, "--")
 
     def _words(self, now: Now) -> str:
-        far = 100 * np.linalg.norm(now.targets - now.effectors, axis=-1)
+        far = np.linalg.norm(now.targets - now.effectors, axis=-1)
+        length = Lengths.of(self.tree, self.effectors)
         rows = []
         for name, row in zip(self.stage.names, far, strict=True):
             pairs = zip(self.effectors.names, row, strict=True)
-            distances = ", ".join(f"{effector} {d:.1f} cm" for effector, d in pairs)
+            distances = ", ".join(f"{effector} {length(d)}" for effector, d in pairs)
             rows.append(f"{name + ': ' if name else ''}{distances}")
         figure = "human" if self.stage.human else "figure"
         layers = "".join(f", {layer}" for layer, on in self.layers.items() if on)

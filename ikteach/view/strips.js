@@ -96,7 +96,7 @@ function paint({ panel, first, canvas }, samples, seconds) {
   pen.globalAlpha = 1;
   pen.textAlign = "right";
   for (let power = Math.ceil(low); power <= high; power++)
-    pen.fillText(String(10 ** power), LEFT - 4, y(10 ** power) + 4);
+    pen.fillText(Math.abs(power) < 5 ? 10 ** power : `1e${power}`, LEFT - 4, y(10 ** power) + 4);
   pen.fillText("now", width - RIGHT, height - 5);
   pen.textAlign = "left";
   pen.fillText(`−${seconds} s`, LEFT, height - 5);

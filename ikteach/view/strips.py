@@ -14,6 +14,8 @@ import traitlets
 
 from ikteach.motion.log import Log
 from ikteach.motion.session import Session
+from ikteach.view.closing import Living
+from ikteach.view.lengths import Lengths, decade
 from ikteach.view.skin import EFFECTOR_COLOURS
 
 EVERY = 3  # ticks from one message to the next: 10 a second at 30 ticks a second
@@ -22,7 +24,7 @@ DASHES: tuple[list[int], ...] = ([], [7, 3], [2, 3], [9, 3, 2, 3], [5, 5], [1, 2
 DISTANCE, JITTER = [1e-4, 3.0], [1e-3, 100.0]  # [m] and [degrees], the ranges of the axes
 
 
-class Strips(anywidget.AnyWidget):
+class Strips(Living, anywidget.AnyWidget):
     """Three plots over the last seconds, on logarithmic axes.
 
     The distance of each effector of the shown method to its target, the mean distance of each
@@ -37,7 +39,9 @@ class Strips(anywidget.AnyWidget):
     def __init__(self, session: Session) -> None:
         self._session, self._run, self._sent = session, session.runs, 0
         self._methods = list(session.methods)
-        distance = {"range": DISTANCE, "unit": "m"}
+        size = decade(session.tree, session.effectors)
+        distance = {"range": [size * end for end in DISTANCE], "unit": "m"}
+        self._length = Lengths.of(session.tree, session.effectors)
         super().__init__(
             panels=[
                 {
@@ -73,7 +77,7 @@ class Strips(anywidget.AnyWidget):
         self.send({"fresh": fresh, "rows": len(rows)}, buffers=[samples.tobytes()])
         if rows and session.ticks % (10 * EVERY) < EVERY:
             self.alt = "Mean distance to target and jitter: " + "; ".join(
-                f"{name} {100 * far:.1f} cm, {much:.2g}°"
+                f"{name} {self._length(far)}, {much:.2g}°"
                 for name, far, much in zip(self._methods, mean[-1], degrees[-1], strict=True)
             )
 

@@ -20,9 +20,10 @@ function element(name, parent, attributes = {}, text = "") {
 function render({ model, el }) {
   element("style", el, {}, STYLE);
   const names = model.get("names"), low = model.get("low"), high = model.get("high");
+  const unit = model.get("unit"), metres = model.get("metres"), digits = model.get("digits");
   const table = element("table", el, { class: "ikteach-targets" });
   const head = element("tr", table);
-  for (const title of ["target [m]", "x, left", "y, up", "z, forward"])
+  for (const title of [`target [${unit}]`, "x, left", "y, up", "z, forward"])
     element("th", head, { scope: "col" }, title);
   const post = courier(model);
   const pairs = names.map((name, target) => {
@@ -40,13 +41,14 @@ function render({ model, el }) {
 
   function pair(row, target, axis, name) {
     const cell = element("td", row);
-    const common = { min: low[target][axis], max: high[target][axis], step: 0.01,
+    const common = { min: low[target][axis] / metres, max: high[target][axis] / metres,
+                     step: model.get("step"),
                      "data-lm-suppress-shortcuts": "true" };
     const slider = element("input", cell, { type: "range", "aria-label": `${name} slider`, ...common });
     const box = element("input", cell, { type: "number", "aria-label": name, ...common });
     if (common.min === common.max) slider.disabled = box.disabled = true;
     slider.addEventListener("input", () => { // one move until the slider is let go
-      post.send({ target, axis, value: slider.valueAsNumber, fresh: !slider.dataset.held });
+      post.send({ target, axis, value: slider.valueAsNumber * metres, fresh: !slider.dataset.held });
       slider.dataset.held = "true";
     });
     slider.addEventListener("change", () => { delete slider.dataset.held; });
@@ -54,7 +56,7 @@ function render({ model, el }) {
     const commit = () => {
       if (!box.dataset.typing) return;
       delete box.dataset.typing;
-      const value = Number.isFinite(box.valueAsNumber) ? box.valueAsNumber : null;
+      const value = Number.isFinite(box.valueAsNumber) ? box.valueAsNumber * metres : null;
       model.send({ target, axis, value, typed: true });
     };
     box.addEventListener("change", commit);
@@ -69,10 +71,10 @@ function render({ model, el }) {
   function show() {
     const values = model.get("values");
     pairs.forEach((row, target) => row.forEach(({ slider, box }, axis) => {
-      const value = values[target][axis];
+      const value = values[target][axis] / metres;
       if (!slider.dataset.held) slider.value = value;
-      slider.setAttribute("aria-valuetext", `${value.toFixed(2)} m`);
-      if (!box.dataset.typing) box.value = value.toFixed(2);
+      slider.setAttribute("aria-valuetext", `${value.toFixed(digits)} ${unit}`);
+      if (!box.dataset.typing) box.value = value.toFixed(digits);
     }));
   }
 

@@ -10,7 +10,9 @@ import traitlets
 
 from ikteach.arrays import Array, ArrayLike
 from ikteach.view.acting import in_words
+from ikteach.view.closing import Living
 from ikteach.view.handles import Handles
+from ikteach.view.lengths import Lengths, digits_of, round_step
 from ikteach.view.positions import Positions
 from ikteach.view.scene import Scene
 from ikteach.view.solids import effector_colour
@@ -20,12 +22,13 @@ HERE = Path(__file__).parent
 ROOM = 1.5  # [m] how far a target of a human may go from where it starts, each way
 
 
-class Targets(anywidget.AnyWidget):
+class Targets(Living, anywidget.AnyWidget):
     """A panel for the targets of a scene, and handles in it if it is a live one.
 
     scene      what shows them; it is not told to, that is the business of `on_change`
     start      where the targets are at first, (k, 3) [m]
     low, high  ranges [m], one number or (k, 3); None: so far as `ROOM` from the start
+    slot       only one of a slot lives at a time: to run a cell again closes the older one
 
     `positions` (k, 3) is where they are, however they were moved: dragged, by keys, by sliders, by
     number boxes, by `move`.
@@ -38,18 +41,26 @@ class Targets(anywidget.AnyWidget):
     high: Any = traitlets.List().tag(sync=True)
     values: Any = traitlets.List().tag(sync=True)
     alert = traitlets.Unicode().tag(sync=True)
+    unit = traitlets.Unicode("m").tag(sync=True)  # in which a person reads and writes
+    metres = traitlets.Float(1.0).tag(sync=True)  # of one such unit
+    step = traitlets.Float(0.01).tag(sync=True)  # of sliders and boxes, in that unit
+    digits = traitlets.Int(2).tag(sync=True)
 
     def __init__(
         self, scene: View, start: ArrayLike, *, low: ArrayLike | None = None,
-        high: ArrayLike | None = None,
+        high: ArrayLike | None = None, slot: str | None = "targets",
     ) -> None:  # fmt: skip
+        self.slot = slot
         stage = scene.stage
         names = stage.effectors.names
         at = np.asarray(start, dtype=float)
-        room = ROOM * stage.unit * np.array([1.0, 1.0, 0.0 if stage.planar else 1.0])
+        room = ROOM * stage.unit * stage.free
+        unit = Lengths.of_places(stage.extent.radius)
+        step = round_step(2 * ROOM * stage.unit / unit.metres)
         self._model = Positions(
-            names, at, at - room if low is None else low, at + room if high is None else high
-        )
+            names, at, at - room if low is None else low, at + room if high is None else high,
+            unit=unit, step=step * unit.metres,
+        )  # fmt: skip
         self.handles = Handles(scene, self._model) if isinstance(scene, Scene) else None
         super().__init__(
             names=list(names),
@@ -57,6 +68,10 @@ class Targets(anywidget.AnyWidget):
             low=self._model.low.tolist(),
             high=self._model.high.tolist(),
             values=self._model.now.tolist(),
+            unit=unit.name,
+            metres=unit.metres,
+            step=step,
+            digits=digits_of(step),
         )
         self._model.on_change(self._agree)
         self.on_msg(self._hear)
@@ -86,13 +101,6 @@ class Targets(anywidget.AnyWidget):
         """Call tell(index, position (3,)) after each move; may be used as a decorator."""
         self._model.on_change(tell)
         return tell
-
-    def close(self) -> None:
-        """Free what the page and the kernel hold of it."""
-        if self.handles is not None:
-            self.handles.close()
-        self.layout.close()
-        super().close()
 
     def _agree(self, index: int, position: Array) -> None:
         self.values = self._model.now.tolist()

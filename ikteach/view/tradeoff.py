@@ -14,6 +14,7 @@ from ikteach.motion.experiment import circle
 from ikteach.solvers import dls
 from ikteach.study import after, variants
 from ikteach.view.bench import Bench, Canvas, Shown, choice, log_slider, slider
+from ikteach.view.closing import making
 from ikteach.view.skin import BLUE, GREEN, ORANGE, RED
 
 START = np.array([0.9, -0.7, -0.6])  # [rad] a bent arm
@@ -94,6 +95,7 @@ class Tradeoff:
         return np.concatenate([frames.positions, locate(frames, effectors)])[:, :2].T
 
 
+@making()
 def tradeoff_bench() -> Bench:
     """The bench of chapter 5. λ, its unit, how far out the target goes, and the moment shown."""
     controls = {

@@ -40,18 +40,21 @@ class Trail:
 
 
 class Prints(Trail):
-    """A mark each time a point stops going forward: where the foot comes down."""
+    """A mark each time a point stops going forward: where the foot comes down.
 
-    def __init__(self, count: tuple[int, int], length: int) -> None:
-        super().__init__(count, length, 0.0)
+    gap  how far a point must go for it to have moved [m]
+    """
+
+    def __init__(self, count: tuple[int, int], length: int, gap: float = 1e-4) -> None:
+        super().__init__(count, length, gap)
         self._before: Array | None = None
         self._forward = np.zeros(count, dtype=bool)
 
     def pass_through(self, points: Array, advance: float) -> Array:
         """Note where the points are; where the marks are now."""
         if self._before is not None:
-            forward = points[..., 2] > self._before[..., 2] + 1e-4
-            back = points[..., 2] < self._before[..., 2] - 1e-4
+            forward = points[..., 2] > self._before[..., 2] + self._gap
+            back = points[..., 2] < self._before[..., 2] - self._gap
             self._drop(self._forward & back, self._before + [0.0, 0.0, advance])
             self._forward = np.where(forward | back, forward, self._forward)
         self._before = points.copy()

@@ -17,9 +17,10 @@ from ikteach.motion.mix import Mix
 from ikteach.motion.reachable import annulus
 from ikteach.motion.session import Session
 from ikteach.motion.step import clip, hold, ignore, per_chain, whole
-from ikteach.solvers import SOLVERS, ellipsoid
+from ikteach.solvers import SOLVERS, Solver, ellipsoid
 from ikteach.solvers.sdls import hard, soft
 from ikteach.view import panels
+from ikteach.view.closing import close_all
 from ikteach.view.glass import Glass
 from ikteach.view.keeping import Keeper
 from ikteach.view.live import Live
@@ -50,10 +51,11 @@ class Workbench(Live):
     """
 
     def __init__(
-        self, *, folder: str | Path = ".", slot: str = "workbench", **options: Any
+        self, *, folder: str | Path = ".", slot: str | None = "workbench", **options: Any
     ) -> None:
         mix = Mix.of(Session().effectors, dict.fromkeys(Session().effectors.names, "dls"))
-        session = Session(methods={**SOLVERS, "mix": mix}, **options)
+        methods: dict[str, Solver] = {**SOLVERS, "mix": mix}
+        session = Session(methods=methods, **options)
         self._times = np.ones(len(session.tree))
         self._plus = np.zeros(len(session.tree))
         self._chosen = 0  # the effector whose J is drawn
@@ -61,8 +63,8 @@ class Workbench(Live):
         self._figures = panels.ONE
         super().__init__(session, self._scene(session), slot, Strips(session))
         self.targets = self._targets()
-        self.recorder = Recorder(session, folder=folder, slot=f"{slot}.movie")
-        self.glass = Glass(session, stop=self.pause, show=self.draw)
+        self.recorder = Recorder(session, folder=folder, slot=None)
+        self.glass = Glass(session, stop=self.pause, show=self.draw, slot=None)
         made = [
             panels.MethodPanel(session), panels.motion_panel(session),
             panels.control_panel(session), panels.view_panel(session), panels.ObjectPanel(),
@@ -73,7 +75,7 @@ class Workbench(Live):
             panel.on_change(self.guarded(self._obey))
         self.bar = self._bar()
         self.bar.on_change(self.guarded(self._obey))
-        self.keeper = Keeper(session, self._look_at, folder=folder)
+        self.keeper = Keeper(session, self._look_at, folder=folder, slot=None)
         self._drawer = widgets.Accordion(
             [*(panel.widget for panel in made), widgets.VBox([self.recorder, self.keeper])],
             titles=[*self.panels, "Recording"],
@@ -182,14 +184,7 @@ class Workbench(Live):
 
     def keep_no_files(self) -> None:
         """Take the panel Recording away, for good: for a page that others operate."""
-        self._drawer.children = self._drawer.children[:-1]
-        self.recorder.close()
-        self.keeper.close()
-
-    def close(self) -> None:
-        """Stop every loop and free all that the page and the kernel hold of it."""
-        self.recorder.close()
-        super().close()
+        close_all(self._drawer.children[-1])
 
     # What a control does.
 
@@ -329,7 +324,7 @@ class Workbench(Live):
         a, e = radians(get["azimuth"]), radians(get["elevation"])
         # To move the figure right is to look at a point left of it.
         sideways, upwards = np.array([cos(a), 0, -sin(a)]), np.array([0.0, 1, 0])
-        middle = -get["right"] * sideways - get["up"] * upwards
+        middle = self.scene.stage.extent.centre - get["right"] * sideways - get["up"] * upwards
         away = np.array([sin(a) * cos(e), sin(e), cos(a) * cos(e)]) * self._distance / get["zoom"]
         self.scene.cameras.put(middle + away, middle)
 
@@ -365,11 +360,11 @@ class Workbench(Live):
 
     def _scene(self, session: Session) -> Scene:
         if self._figures == panels.ONE:
-            return Scene(session.tree, session.effectors)
+            return Scene(session.tree, session.effectors, slot=None)
         apart = 0.0 if self._figures == panels.OVER else None
         return Scene(
             session.tree, session.effectors, names=list(SOLVERS), apart=apart,
-            width=540 if apart == 0 else 720,
+            width=540 if apart == 0 else 720, slot=None,
         )  # fmt: skip
 
     def _fit(self) -> None:
@@ -378,7 +373,7 @@ class Workbench(Live):
         self._stage.layout.flex, self._stage.layout.width = f"0 0 {width}px", f"{width}px"
 
     def _targets(self) -> Targets:
-        targets = Targets(self.scene, self.session.targets, low=-ROOM, high=ROOM)
+        targets = Targets(self.scene, self.session.targets, low=-ROOM, high=ROOM, slot=None)
         targets.on_change(self.guarded(self._aim))
         return targets
 
@@ -387,7 +382,7 @@ class Workbench(Live):
             raise ValueError("that session is of another figure")
         self.pause()
         self._back_to_now()
-        self.replay = Replay(run, self.scene)
+        self.replay = Replay(run, self.scene, slot=None)
         self._aside.children = [self.replay]
         self.status.say("A run is looked at. Play, or “Back to now”, goes on where it stopped.")
 

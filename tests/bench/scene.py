@@ -94,7 +94,8 @@ new MutationObserver(() => {{
 AT = """
 from ikteach.view.stage import picture_axes
 eye = np.array(scene.camera.position)
-seen = (targets.positions[3] + scene.stage.places[0] - eye) @ picture_axes(eye)
+back = eye - scene.stage.extent.centre
+seen = (targets.positions[3] + scene.stage.places[0] - eye) @ picture_axes(back)
 spot = (seen[:2] / -seen[2]).tolist()
 """
 

@@ -29,18 +29,16 @@ class Chapter(NamedTuple):
 
 
 CHAPTERS = [
-    Chapter("00_figure.ipynb", "Poser(figures.human())", "Bench._living['poser']", CANVAS),
-    Chapter(
-        "01_jacobian.ipynb", "ColumnPoser(figures.human())", "Bench._living['columns']", CANVAS
-    ),
-    Chapter("02_singularity.ipynb", "BendBench()", "Bench._living['bend']", CANVAS),
+    Chapter("00_figure.ipynb", "Poser(figures.human())", "occupant('poser')", CANVAS),
+    Chapter("01_jacobian.ipynb", "ColumnPoser(figures.human())", "occupant('columns')", CANVAS),
+    Chapter("02_singularity.ipynb", "BendBench()", "occupant('bend')", CANVAS),
     Chapter("03_transpose.ipynb", "bench = slope_bench()", "bench", PICTURE),
     Chapter("04_pseudoinverse.ipynb", "player = CapPlayer()", "player", CANVAS),
     Chapter("05_dls.ipynb", "bench = tradeoff_bench()", "bench", PICTURE),
     Chapter("06_sdls.ipynb", "bench = spectrum_bench()", "bench", PICTURE),
     Chapter("08_comparison.ipynb", "race = Race()", "race", CANVAS),
 ]
-ENDS = """from ikteach.view.bench import Bench
+ENDS = """from ikteach.view.closing import occupant
 
 def all_to(figure, which):
     "All sliders at once to one of their ends. (One by one, without a page: tests/view.)"

@@ -95,7 +95,8 @@ def where(scene: Notebook, target: int, name: str = "scene", panel: str = "targe
 import numpy as _np
 from ikteach.view.stage import picture_axes as _axes
 _eye = _np.array({name}.camera.position)
-_x, _y, _z = (_np.array({panel}.positions[{target}]) - _eye) @ _axes(_eye)
+_x, _y, _z = (_np.array({panel}.positions[{target}]) - _eye) @ _axes(
+    _eye - {name}.renderer.controls[0].target)
 """
     x, y, z = scene.kernel("[float(_x), float(_y), float(_z)]", code)
     scene.page.locator(CANVAS).first.scroll_into_view_if_needed()

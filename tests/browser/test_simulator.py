@@ -60,10 +60,12 @@ def share(picture: np.ndarray, colour: list[int], at: np.ndarray, radius: int = 
 
 def place(reach: Notebook) -> np.ndarray:
     """The pixel at which the cursor is seen."""
-    eye, cursor = map(
-        np.array, reach.kernel(f"[player.scene.camera.position, {SESSION}.cursor.tolist()]")
+    centre = "player.scene.stage.extent.centre.tolist()"
+    eye, cursor, at = map(
+        np.array,
+        reach.kernel(f"[player.scene.camera.position, {SESSION}.cursor.tolist(), {centre}]"),
     )
-    back = eye / np.linalg.norm(eye)
+    back = (eye - at) / np.linalg.norm(eye - at)
     right = np.cross([0, 1, 0], back)
     right /= np.linalg.norm(right)
     x, y, z = np.array([right, np.cross(back, right), back]) @ (cursor - eye)

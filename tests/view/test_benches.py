@@ -12,6 +12,7 @@ from PIL import Image
 from ikteach.view import charts
 from ikteach.view.bench import Bench, Shown, slider
 from ikteach.view.caps import CapPlayer
+from ikteach.view.closing import occupant
 from ikteach.view.player import GaitPlayer
 from ikteach.view.race import OWN, Race
 from ikteach.view.slope import slope_bench
@@ -68,9 +69,9 @@ def test_a_bench_tells_what_went_wrong_and_goes_on() -> None:
     assert pressed == [1]
     other = Bench(show, {"x": slider("x", 0.0, 0.0, 2.0, 0.1)}, slot="test")
     assert bench.comm is None
-    assert Bench._living["test"] is other
+    assert occupant("test") is other
     other.close()
-    assert "test" not in Bench._living
+    assert occupant("test") is None
 
 
 def test_the_arm_steps_downhill_and_starts_again() -> None:

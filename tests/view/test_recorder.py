@@ -8,6 +8,7 @@ import pytest
 
 from ikteach.formats import movie
 from ikteach.motion.session import Session
+from ikteach.view.closing import occupant
 from ikteach.view.recorder import NOW, PAST, Recorder
 
 
@@ -32,7 +33,7 @@ def in_a_loop(story, tmp_path, **values):
         session, panel = recorder(tmp_path, **values)
         await story(session, panel)
         panel.close()
-        assert not Recorder._living
+        assert occupant("movie") is None
         return panel
 
     return asyncio.run(told())

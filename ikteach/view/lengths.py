@@ -1,0 +1,65 @@
+"""Lengths as a person reads them: in the unit that suits the size of the body."""
+
+from math import floor, log10
+from typing import NamedTuple
+
+from ikteach.body import Effectors, Tree
+from ikteach.body.extent import extent
+
+
+class Lengths(NamedTuple):
+    """A unit for distances of a body: name, and what it is in metres."""
+
+    name: str
+    metres: float
+
+    @classmethod
+    def of(cls, tree: Tree, effectors: Effectors) -> "Lengths":
+        """The unit for distances: the largest of which the body's reach has ten."""
+        radius = extent(tree, effectors).radius
+        return next((one for one in UNITS if radius >= 10 * one.metres), UNITS[-1])
+
+    @classmethod
+    def of_places(cls, radius: float) -> "Lengths":
+        """The unit for coordinates of a body of that reach [m]: metres as long as they do."""
+        fit = (one for one in UNITS if one.name != "cm" and radius >= LEAST[one.name])
+        return next(fit, UNITS[-1])
+
+    def number(self, length: float, digits: int = 1) -> str:
+        """The number of a length [m]: to so many digits, and short where it is far too large."""
+        value = length / self.metres
+        return f"{value:.{digits}f}" if abs(value) < 1e6 else f"{value:.3g}"
+
+    def __call__(self, length: float, digits: int = 1) -> str:
+        """A length [m] in words, as "12.3 cm"."""
+        return f"{self.number(length, digits)} {self.name}"
+
+
+LEAST = {"km": 1e4, "m": 0.1, "mm": 1e-4, "µm": 1e-7, "nm": 0.0}  # reach [m] for places in them
+UNITS = (
+    Lengths("km", 1e3),
+    Lengths("m", 1.0),
+    Lengths("cm", 1e-2),
+    Lengths("mm", 1e-3),
+    Lengths("µm", 1e-6),
+    Lengths("nm", 1e-9),
+)
+
+METRE = UNITS[1]
+
+
+def decade(tree: Tree, effectors: Effectors) -> float:
+    """The power of ten that is nearest to the body's reach [m]: 1 of a human."""
+    return 10.0 ** round(log10(extent(tree, effectors).radius))
+
+
+def digits_of(step: float) -> int:
+    """How many digits behind the point tell multiples of a step apart."""
+    return max(0, -floor(log10(step) + 1e-9))
+
+
+def round_step(range_: float, steps: int = 300) -> float:
+    """A step of 1, 2 or 5 times a power of ten that goes through a range in about so many."""
+    rough = range_ / steps
+    power = 10.0 ** floor(log10(rough))
+    return float(min((1, 2, 5, 10), key=lambda m: abs(log10(m * power / rough))) * power)

@@ -1,0 +1,245 @@
+"""Whatever lives in a cell: made twice, in part, closed; every widget that lives can be sent."""
+
+import ast
+import importlib
+import json
+import pkgutil
+from collections.abc import Callable, Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import ipywidgets as widgets
+import numpy as np
+import pytest
+
+import ikteach.course
+import ikteach.view
+from ikteach import figures
+from ikteach.body.figures import Figure
+from ikteach.course import predict, quiz
+from ikteach.motion.planar import PlanarReach
+from ikteach.motion.session import Session
+from ikteach.view.ball import Ball
+from ikteach.view.bench import Bench, Shown, slider
+from ikteach.view.caps import CapPlayer
+from ikteach.view.closing import Living, living, occupant
+from ikteach.view.driver import Driver
+from ikteach.view.glass import Glass
+from ikteach.view.handles import Handles
+from ikteach.view.keeping import Keeper
+from ikteach.view.picture import Picture
+from ikteach.view.pointing import Curve, Rows
+from ikteach.view.race import Race
+from ikteach.view.recorder import Recorder
+from ikteach.view.replay import Replay
+from ikteach.view.slope import slope_bench
+from ikteach.view.spectrum import spectrum_bench
+from ikteach.view.status import Status
+from ikteach.view.strips import Strips
+from ikteach.view.targets import Targets
+from ikteach.view.tradeoff import tradeoff_bench
+
+NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
+
+
+def arm() -> Figure:
+    return figures.planar_arm(2)
+
+
+def still() -> Any:
+    one = ikteach.view.StillScene(*arm())
+    one.show(np.zeros(2), np.ones((1, 3)))
+    assert one.widget.png
+    return one
+
+
+@cache
+def log() -> Any:
+    session = Session()
+    for _ in range(3):
+        session.tick()
+    return session.log()
+
+
+# What is imported by a notebook, exported by `view`, or lives, and how a cell makes one.
+FIGURES: dict[Any, Callable[[], Any]] = {
+    ikteach.view.BendBench: ikteach.view.BendBench,
+    ikteach.view.ColumnPoser: lambda: ikteach.view.ColumnPoser(arm()),
+    ikteach.view.GaitPlayer: ikteach.view.GaitPlayer,
+    ikteach.view.Poser: lambda: ikteach.view.Poser(figures.human()),
+    ikteach.view.Scene: lambda: ikteach.view.Scene(*arm()),
+    ikteach.view.Simulator: lambda: ikteach.view.Simulator(PlanarReach()),
+    ikteach.view.StillScene: still,
+    ikteach.view.Workbench: ikteach.view.Workbench,
+    CapPlayer: CapPlayer,
+    Race: Race,
+    Bench: lambda: Bench(lambda x: Shown(b"", ""), {"x": slider("x", 0, 0, 1, 1)}, slot="own"),
+    slope_bench: slope_bench,
+    spectrum_bench: spectrum_bench,
+    tradeoff_bench: tradeoff_bench,
+    Glass: lambda: Glass(Session()),
+    Keeper: lambda: Keeper(Session()),
+    Recorder: lambda: Recorder(Session()),
+    Replay: lambda: Replay(log()),
+    Targets: lambda: Targets(ikteach.view.Scene(*arm()), [[1.0, 1.0, 0.0]]),
+    predict: lambda: predict("00.test", "Which?", ["one", "other"]),
+    quiz: lambda: quiz("00.test", "Which?", ["one", "other"], "one", "It is so."),
+}
+
+# Parts of figures: they live as long as what they are in, and have no slot of their own.
+PARTS: dict[Any, Callable[[], Any]] = {
+    Ball: Ball,
+    Curve: Curve,
+    Driver: lambda: ikteach.view.Scene(*arm(), slot=None).driver,
+    Handles: lambda: Targets(ikteach.view.Scene(*arm(), slot=None), [[1, 1, 0]], slot=None).handles,
+    Picture: Picture,
+    Rows: Rows,
+    Status: Status,
+    Strips: lambda: Strips(Session()),
+}
+# In notebooks too, but what they give back is no widget.
+NO_WIDGETS = {
+    "bars", "check", "export", "film", "heat", "lines", "phase_plot", "reveal", "source",
+}  # fmt: skip
+
+
+def by_name(makers: dict[Any, Callable[[], Any]]) -> Any:
+    return pytest.mark.parametrize(
+        "make", [pytest.param(m, id=k.__name__) for k, m in makers.items()]
+    )
+
+
+@pytest.fixture(autouse=True)
+def alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Nothing lives before and after, and files go elsewhere."""
+    monkeypatch.chdir(tmp_path)
+    widgets.Widget.close_all()
+    yield
+    widgets.Widget.close_all()
+
+
+def all_can_be_sent() -> None:
+    """What the kernel does when a page is loaded anew."""
+    for widget in list(living.values()):
+        widget.get_state()
+
+
+def of_notebooks() -> dict[str, set[str]]:
+    """The names that the chapters import of `view` and `course`, by module."""
+    found: dict[str, set[str]] = {}
+    for path in NOTEBOOKS.glob("*.ipynb"):
+        cells = json.loads(path.read_text("utf-8"))["cells"]
+        lines = [line for cell in cells if cell["cell_type"] == "code" for line in cell["source"]]
+        for line in lines:
+            if line.startswith(("from ikteach.view", "from ikteach.course")):
+                (node,) = ast.parse(line.strip()).body
+                assert isinstance(node, ast.ImportFrom)
+                found.setdefault(str(node.module), set()).update(a.name for a in node.names)
+    return found
+
+
+def all_that_live() -> set[type]:
+    """Every class of `view` and `course` that lives in a cell, and that no other is made of."""
+    for room in (ikteach.view, ikteach.course):
+        for module in pkgutil.walk_packages(room.__path__, f"{room.__name__}."):
+            if not module.name.startswith(("ikteach.course.lecture", "ikteach.course.solutions")):
+                importlib.import_module(module.name)
+    found, waiting = set[type](), Living.__subclasses__()
+    while waiting:
+        one = waiting.pop()
+        waiting += one.__subclasses__()
+        if one.__module__.startswith("ikteach.") and not one.__subclasses__():
+            found.add(one)
+    return found
+
+
+def test_none_is_forgotten() -> None:
+    known = FIGURES.keys() | PARTS.keys()
+    assert {getattr(ikteach.view, name) for name in ikteach.view.__all__} <= known
+    imported = {
+        getattr(importlib.import_module(module), name)
+        for module, names in of_notebooks().items()
+        for name in names - NO_WIDGETS
+    }
+    assert len(imported) > 10
+    assert imported <= known
+    within = {"CursorScene", "Question"}  # of Simulator; of predict and quiz
+    assert {one for one in all_that_live() if one.__name__ not in within} <= known
+
+
+@by_name(FIGURES)
+def test_a_cell_run_again_adds_nothing_and_all_can_be_sent(make: Callable[[], Any]) -> None:
+    first = make()
+    count = len(living)
+    all_can_be_sent()
+    for _ in range(2):
+        newest = make()
+        assert len(living) == count
+        all_can_be_sent()
+    assert occupant(first.slot) is newest
+    first.close()  # once more
+    assert len(living) == count
+    newest.close()
+    if not isinstance(newest, Targets):
+        assert not living
+    all_can_be_sent()
+
+
+@by_name(FIGURES | PARTS)
+def test_what_is_closed_leaves_nothing_in_boxes_and_links_of_others(
+    make: Callable[[], Any],
+) -> None:
+    one = make()
+    shown = one if isinstance(one, widgets.Widget) else one.widget
+    box = widgets.HBox([widgets.Accordion([shown]), widgets.Label("mine")])
+    sliders = [w for w in living.values() if isinstance(w, widgets.FloatSlider)]
+    mine = widgets.FloatSlider()
+    links = [widgets.jslink((mine, "value"), (other, "value")) for other in sliders[:1]]
+    one.close()
+    all_can_be_sent()
+    assert box.comm is not None
+    assert mine.comm is not None
+    assert box.children[0].children == ()
+    assert all(link.comm is None for link in links)
+
+
+@by_name(FIGURES)
+def test_every_part_may_close_before_the_whole(make: Callable[[], Any]) -> None:
+    make()
+    parts = [one for one in living.values() if isinstance(one, Living) and one.slot is None]
+    for part in parts:
+        part.close()
+        all_can_be_sent()
+    make().close()
+    all_can_be_sent()
+
+
+class HalfwayError(Exception):
+    pass
+
+
+@by_name(FIGURES)
+@pytest.mark.parametrize("share", [0.0, 0.5, 0.999])
+@pytest.mark.filterwarnings("error::pytest.PytestUnraisableExceptionWarning")
+def test_a_constructor_that_fails_leaves_what_was_before(
+    make: Callable[[], Any], share: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = make()
+    known = set(living)
+    opened, open_one = 0, widgets.Widget.open
+
+    def fails(self: widgets.Widget) -> None:
+        nonlocal opened
+        if opened == int(share * len(known)):
+            raise HalfwayError
+        opened += 1
+        open_one(self)
+
+    monkeypatch.setattr(widgets.Widget, "open", fails)
+    with pytest.raises(HalfwayError):
+        make()
+    monkeypatch.undo()
+    if before.slot not in ("own", "still", "targets"):  # their cells make more than one thing
+        assert set(living) == known
+    all_can_be_sent()
