@@ -12,13 +12,13 @@ import ikteach
 PACKAGE = Path(ikteach.__file__).parent
 MODULES = sorted(path.relative_to(PACKAGE) for path in PACKAGE.rglob("*.py"))
 
-TOOLS = {"arrays", "checks", "files", "names", "text"}  # what every room may use
+TOOLS = {"arrays", "checks", "files", "markup", "names"}  # what every room may use
 BELOW = {  # what each room may import of the package
     "arrays": set(),
     "checks": TOOLS,
     "files": TOOLS,
     "names": TOOLS,
-    "text": TOOLS,
+    "markup": TOOLS,
     "server": set(),
     "body": TOOLS,
     "solvers": TOOLS,

@@ -30,6 +30,7 @@ from ikteach.course.deadline import TooLongError, deadline
 from ikteach.course.notice import LOOK, Mood, box, paragraph
 from ikteach.course.untouched import Unpatched, untouched
 from ikteach.files import bounded
+from ikteach.markup import Markup
 from ikteach.names import unknown
 
 NOT_YET = "Not yet"
@@ -72,7 +73,7 @@ class Verdict:
     __repr__ = __str__
 
     def _repr_html_(self) -> str:
-        hint = f"<br><b>Hint:</b> {paragraph(self.hint)}" if self.hint else ""
+        hint = Markup("<br><b>Hint:</b> {}").format(paragraph(self.hint)) if self.hint else ""
         return box(self.mood, paragraph(self.sentence) + hint)
 
 

@@ -1,8 +1,9 @@
 """A sentence for the student, in the output of a cell."""
 
-import html
 from dataclasses import dataclass
 from typing import Literal
+
+from ikteach.markup import Markup, escaped, untouched
 
 Mood = Literal["good", "bad", "plain"]
 
@@ -29,18 +30,20 @@ class Notice:
         return box(self.mood, paragraph(self.sentence))
 
 
-def box(mood: Mood, content: str) -> str:
-    """HTML `content` beside a sign, with a coloured edge."""
+def box(mood: Mood, content: Markup) -> Markup:
+    """The content beside a sign, with a coloured edge."""
     sign, colour = LOOK[mood]
-    return (
-        f'<div role="status" style="border-left:4px solid {colour};padding:2px 12px;margin:4px 0">'
-        f'<span aria-hidden="true" style="color:{colour};font-weight:bold">{sign}</span> '
-        f"{content}</div>"
+    return untouched(
+        Markup(
+            '<div role="status" style="border-left:4px solid {1};padding:2px 12px;margin:4px 0">'
+            '<span aria-hidden="true" style="color:{1};font-weight:bold">{0}</span> {2}</div>'
+        ).format(sign, colour, content)
     )
 
 
-def paragraph(text: str) -> str:
-    """Text made safe for HTML; `code` in backquotes is set as such."""
-    parts = html.escape(text).split("`")
-    marked = (f"<code>{part}</code>" if i % 2 else part for i, part in enumerate(parts))
-    return "".join(marked) if len(parts) % 2 else html.escape(text)
+def paragraph(text: str) -> Markup:
+    """The text as HTML; `code` in backquotes is set as such."""
+    parts, code = text.split("`"), Markup("<code>{}</code>")
+    if len(parts) % 2 == 0:
+        return escaped(text)
+    return Markup().join(code.format(part) if i % 2 else part for i, part in enumerate(parts))

@@ -1,6 +1,5 @@
 """A chapter as a page of HTML that needs no network: run, with pictures and MathML."""
 
-import html
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,6 +12,8 @@ from nbconvert import HTMLExporter
 from nbconvert.filters.highlight import Highlight2HTML
 from nbconvert.filters.markdown_mistune import IPythonRenderer, MarkdownWithMath
 from pygments.formatters import HtmlFormatter
+
+from ikteach.markup import Markup
 
 WIDGET = "application/vnd.jupyter.widget-view+json"
 STYLE = """
@@ -76,41 +77,43 @@ def page(path: Path, titles: Mapping[str, str]) -> str:
     exporter.register_filter("highlight_code", _highlight)
     body, _ = exporter.from_notebook_node(notebook)
     nav = _nav(titles, path.name)
-    return document(titles[path.name], f"{nav}\n<main>{body}</main>\n{nav}")
+    whole = Markup("{0}\n<main>{1}</main>\n{0}").format(nav, Markup(body))
+    return document(titles[path.name], whole)
 
 
-def _nav(titles: Mapping[str, str], name: str) -> str:
+def _nav(titles: Mapping[str, str], name: str) -> Markup:
     """Links to the chapters before and after this one."""
     names = [None, *titles, None]
     here = names.index(name)
     before = _link(titles, names[here - 1], "← ")
     after = _link(titles, names[here + 1], "→ ")
-    every = '<a href="index.html">All chapters</a>'
-    return f'<nav aria-label="chapters">{before} {every} {after}</nav>'
+    every = Markup('<a href="index.html">All chapters</a>')
+    return Markup('<nav aria-label="chapters">{} {} {}</nav>').format(before, every, after)
 
 
-def _link(titles: Mapping[str, str], name: str | None, arrow: str = "") -> str:
+def _link(titles: Mapping[str, str], name: str | None, arrow: str = "") -> Markup:
     if name is None:
-        return "<span></span>"
-    return f'<a href="{Path(name).with_suffix(".html")}">{arrow}{html.escape(titles[name])}</a>'
+        return Markup("<span></span>")
+    page = Path(name).with_suffix(".html")
+    return Markup('<a href="{}">{}{}</a>').format(page, arrow, titles[name])
 
 
 def index(titles: Mapping[str, str]) -> str:
     """The list of chapters."""
-    rows = "".join(f"<li>{_link(titles, name)}</li>" for name in titles)
-    text = "<p>To read. Live figures need a kernel: <code>python -m ikteach</code>.</p>"
+    rows = Markup().join(Markup("<li>{}</li>").format(_link(titles, name)) for name in titles)
+    text = Markup("<p>To read. Live figures need a kernel: <code>python -m ikteach</code>.</p>")
     heading = "Inverse kinematics"
-    return document(heading, f"<main><h1>{heading}</h1>{text}<ul>{rows}</ul></main>")
+    body = Markup("<main><h1>{}</h1>{}<ul>{}</ul></main>").format(heading, text, rows)
+    return document(heading, body)
 
 
-def document(title: str, body: str) -> str:
+def document(title: str, body: Markup) -> Markup:
     """A whole page."""
-    return (
-        f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{html.escape(title)}</title>\n<style>{STYLE}{_colours()}</style>\n</head>\n"
-        f"<body>\n{body}\n</body>\n</html>\n"
-    )
+    return Markup(
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        "<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n{}\n</body>\n</html>\n"
+    ).format(title, Markup(STYLE), Markup(_colours()), body)
 
 
 def _colours() -> str:
@@ -132,8 +135,8 @@ def _still(output: Any) -> None:
     live = data.pop(WIDGET, None) is not None
     if "image/png" in data and "text/html" not in data:
         png = data["image/png"].strip()
-        alt = html.escape(words, quote=True)
-        data["text/html"] = f'<img alt="{alt}" src="data:image/png;base64,{png}">'
+        data["text/html"] = Markup('<img alt="{}" src="data:image/png;base64,{}">').format(
+            words, png
+        )
     elif live and "text/html" not in data:
-        note = "A live figure stands here in the notebook."
-        data["text/html"] = f"<p><em>{note}</em></p>"
+        data["text/html"] = "<p><em>A live figure stands here in the notebook.</em></p>"

@@ -3,7 +3,6 @@
 The widgets are made in `ikteach.course.widget`, imported when the first one is asked for.
 """
 
-import html
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from numbers import Real
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from ikteach.course import record
 from ikteach.course.notice import box
 from ikteach.files import bounded, plain
+from ikteach.markup import Markup
 
 if TYPE_CHECKING:
     from ikteach.course.widget import Question
@@ -125,7 +125,7 @@ class Revealed:
 
     def _repr_html_(self) -> str:
         mood = {True: "good", False: "bad", None: "plain"}[self.right]
-        return box(mood, "<br>".join(map(html.escape, self._lines())))  # type: ignore[arg-type]
+        return box(mood, Markup("<br>").join(self._lines()))  # type: ignore[arg-type]
 
 
 def reveal(key: str, answer: Any, because: str | None = None) -> Revealed:

@@ -7,7 +7,6 @@ needs no other line there than elsewhere.
 """
 
 import argparse
-import html
 import json
 import os
 import shutil
@@ -22,6 +21,7 @@ from typing import NamedTuple
 
 from ikteach.course import builds
 from ikteach.course.opening import MANIFEST, Manifest, chapters, find_course, read_manifest
+from ikteach.markup import Markup
 
 PYODIDE = "314.0.6"
 PYODIDE_ADDRESS = f"https://cdn.jsdelivr.net/pyodide/v{PYODIDE}/full"
@@ -284,10 +284,8 @@ def lay_out(project: Path, made: Path, kernel: Path) -> None:
 
 def start_page(titles: Mapping[str, str]) -> str:
     """The first page: a link a chapter, and what to know before."""
-    rows = "".join(
-        f'<li><a href="lab/index.html?path={name}">{html.escape(title)}</a></li>\n'
-        for name, title in titles.items()
-    )
+    row = Markup('<li><a href="lab/index.html?path={}">{}</a></li>\n')
+    rows = Markup().join(row.format(name, title) for name, title in titles.items())
     return START_PAGE.replace("ROWS", rows)
 
 

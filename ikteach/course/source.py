@@ -1,9 +1,10 @@
 """Show the code that a chapter is about, in the chapter."""
 
-import html
 import inspect
 from collections.abc import Callable
 from typing import Any
+
+from ikteach.markup import escaped
 
 
 class Source:
@@ -17,7 +18,7 @@ class Source:
         return self.text
 
     def _repr_markdown_(self) -> str:
-        return f"`{html.escape(self.name)}`\n\n```python\n{self.text}```"
+        return f"`{escaped(self.name)}`\n\n```python\n{self.text}```"
 
 
 def source(thing: Callable[..., Any]) -> Source:

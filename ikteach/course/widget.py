@@ -1,6 +1,5 @@
 """The widget of a question. It knows nothing of what is right; it tells what was answered."""
 
-import html
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -8,6 +7,7 @@ from typing import Any
 import anywidget
 import traitlets
 
+from ikteach.markup import Markup, untouched
 from ikteach.view.closing import Living, occupant
 
 
@@ -58,9 +58,11 @@ class Question(Living, anywidget.AnyWidget):
         if self.kind == "number":
             low, high, unit = self.numbers
             lines = [f"a number from {low} to {high} {unit}".strip()]
-        items = "".join(f"<li>{html.escape(line)}</li>" for line in lines)
-        note = f"<p>{html.escape(self.note)}</p>" if self.note else ""
-        return (
-            '<div style="border-left:4px solid #0072b2;padding:2px 14px">'
-            f"<b>{html.escape(self.question)}</b>{note}<ul>{items}</ul></div>"
+        items = Markup().join(map(Markup("<li>{}</li>").format, lines))
+        note = Markup("<p>{}</p>").format(self.note) if self.note else ""
+        return untouched(
+            Markup(
+                '<div style="border-left:4px solid #0072b2;padding:2px 14px">'
+                "<b>{}</b>{}<ul>{}</ul></div>"
+            ).format(self.question, note, items)
         )

@@ -4,15 +4,20 @@ const R = 54, STEP = 5; // [pixels], [degrees]
 const KEYS = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 const SVG = "http://www.w3.org/2000/svg";
 
+function svg(name, attributes, words = "") {
+  const made = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  made.textContent = words;
+  return made;
+}
+
 function render({ model, el }) {
-  const ball = document.createElementNS(SVG, "svg");
-  const attributes = {
+  const ball = svg("svg", {
     width: 2 * R + 12, height: 2 * R + 12, viewBox: `${-R - 6} ${-R - 6} ${2 * R + 12} ${2 * R + 12}`,
     tabindex: 0, role: "slider", class: "ikteach-ball", "data-lm-suppress-shortcuts": "true",
     "aria-valuemin": -180, "aria-valuemax": 180,
     style: "touch-action:none;cursor:grab", "aria-label": model.get("label"),
-  };
-  for (const [name, value] of Object.entries(attributes)) ball.setAttribute(name, value);
+  });
   el.appendChild(ball);
   let held = null;
 
@@ -35,7 +40,7 @@ function render({ model, el }) {
         path += depth < 0 ? "" : `${up ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`;
         up = depth >= 0;
       }
-      return `<path d="${path}" fill="none" stroke="currentColor" stroke-opacity="0.5"/>`;
+      return svg("path", { d: path, fill: "none", stroke: "currentColor", "stroke-opacity": 0.5 });
     };
     const lines = [-60, -30, 0, 30, 60].map((degrees) => {
       const b = (degrees * Math.PI) / 180;
@@ -46,11 +51,12 @@ function render({ model, el }) {
       lines.push(circle((t) => [Math.sin(b) * Math.cos(t), Math.sin(t), Math.cos(b) * Math.cos(t)]));
     }
     const [x, y, depth] = view(0, 0, 1);
-    const front = depth < 0 ? "" :
-      `<circle cx="${x}" cy="${y}" r="6" fill="#d55e00"/><text x="${x + 8}" y="${y + 4}" ` +
-      `font-size="11" fill="currentColor">front</text>`;
-    ball.innerHTML = `<circle r="${R}" fill="#56b4e9" fill-opacity="0.2" stroke="currentColor"/>` +
-      lines.join("") + front;
+    const front = depth < 0 ? [] : [
+      svg("circle", { cx: x, cy: y, r: 6, fill: "#d55e00" }),
+      svg("text", { x: x + 8, y: y + 4, "font-size": 11, fill: "currentColor" }, "front"),
+    ];
+    const rim = { r: R, fill: "#56b4e9", "fill-opacity": 0.2, stroke: "currentColor" };
+    ball.replaceChildren(svg("circle", rim), ...lines, ...front);
     const words = `${Math.round(model.get("azimuth"))}° to the left of the front, ` +
       `${Math.round(model.get("elevation"))}° up`;
     ball.setAttribute("aria-valuenow", Math.round(model.get("azimuth")));

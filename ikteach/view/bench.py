@@ -13,17 +13,18 @@ from ikteach.view.acting import Actor, in_words
 from ikteach.view.closing import Living
 from ikteach.view.picture import Picture
 from ikteach.view.plots import as_png
+from ikteach.view.prose import Prose
 from ikteach.view.status import Status
 
 WIDE = {"description_width": "190px"}
 
 
 class Shown(NamedTuple):
-    """What a bench shows: a picture, the same in words, and what stands under it (HTML)."""
+    """What a bench shows: a picture, the same in words, and what stands under it."""
 
     png: bytes
     words: str
-    below: str = ""
+    below: str = ""  # Markup, or text that is shown as it is
 
 
 class Canvas:
@@ -67,7 +68,7 @@ class Bench(Living, widgets.VBox):  # type: ignore[misc]
         self._waiting: list[Callable[[], None]] = []
         self._act = Actor()
         self.status = Status()
-        self._picture, self._below = Picture(), widgets.HTML()
+        self._picture, self._below = Picture(), Prose()
         self.buttons = {label: widgets.Button(description=label) for label in buttons or {}}
         for label, act in (buttons or {}).items():
             self.buttons[label].on_click(lambda _, act=act: self._after(act))

@@ -74,4 +74,4 @@ class BendBench(SceneBench):
             f"{manipulability(J[:2]):.3g}, condition {conditioning(J):.3g}. "
             f"Jᵀe has the length {np.linalg.norm(J.T @ e):.3g}. Steps: {told}."
         )
-        return Shown(self._canvas.png(), words, f"<p>{words}</p>")
+        return Shown(self._canvas.png(), words, words)

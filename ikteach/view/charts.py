@@ -7,6 +7,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ikteach.markup import as_label
 from ikteach.view.picture import Still
 from ikteach.view.plots import STYLES
 from ikteach.view.skin import EFFECTOR_COLOURS
@@ -23,7 +24,7 @@ def lines(
     for i, name in enumerate(table):
         style = MARKS[i % len(MARKS)] * marks + STYLES[i % len(STYLES)]
         colour = EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)]
-        axes.plot(table.index, table[name], style, color=colour, ms=4, label=str(name))
+        axes.plot(table.index, table[name], style, color=colour, ms=4, label=as_label(name))
     axes.legend(fontsize=8)
     told = (
         f"{name} from {part.iloc[0]:.3g} to {part.iloc[-1]:.3g}, "
@@ -43,12 +44,12 @@ def bars(
     for i, name in enumerate(table):
         axes.bar(
             at + (i - (len(table.columns) - 1) / 2) * width, table[name], 0.92 * width,
-            yerr=None if spread is None else spread[name], capsize=3, label=str(name),
+            yerr=None if spread is None else spread[name], capsize=3, label=as_label(name),
             color=EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)], hatch=HATCHES[i % len(HATCHES)],
             edgecolor="white", ecolor="0.25",
         )  # fmt: skip
     labels = [", ".join(row) if isinstance(row, tuple) else str(row) for row in table.index]
-    axes.set_xticks(at, labels)
+    axes.set_xticks(at, map(as_label, labels))
     axes.legend(fontsize=8)
     told = (
         f"{label}: " + ", ".join(f"{name} {value:.3g}" for name, value in row.items())

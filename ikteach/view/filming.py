@@ -14,6 +14,7 @@ from ikteach.arrays import Array
 from ikteach.body import Effectors, Tree, forward, locate
 from ikteach.body.rotation import sticks, transforms
 from ikteach.formats.movie import Pixels
+from ikteach.markup import visible
 from ikteach.motion.log import Log
 from ikteach.names import unknown
 from ikteach.view.raycast import Eye, Solid, box, draw, ellipsoid, rod, solids, square
@@ -139,7 +140,7 @@ class Film:
         high = max(10, round(self.size[1] / 26))
         pen = ImageDraw.Draw(image)
         left = high * 0.8
-        pen.text((left, self.size[1] - 1.9 * high), caption, fill=INK, font=_font(high))
+        pen.text((left, self.size[1] - 1.9 * high), visible(caption), fill=INK, font=_font(high))
 
 
 @cache

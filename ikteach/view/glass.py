@@ -4,15 +4,17 @@ from collections.abc import Callable
 
 import ipywidgets as widgets
 
+from ikteach.markup import Markup
 from ikteach.motion.anatomy import Anatomy, anatomy
 from ikteach.motion.session import Session
 from ikteach.view.acting import Actor
 from ikteach.view.closing import Living
 from ikteach.view.glass_pages import PAGES, Names, Page
 from ikteach.view.picture import Picture
+from ikteach.view.prose import Prose, table
 from ikteach.view.status import Status
 
-STYLE = (
+STYLE = Markup(
     "<style>.ikteach-glass td, .ikteach-glass th"
     "{padding:1px 10px;text-align:right;line-height:1.5}</style>"
 )
@@ -46,7 +48,7 @@ class Glass(Living, widgets.VBox):  # type: ignore[misc]
         self.method = widgets.Dropdown(
             options=list(session.methods), value=session.method, description="Method"
         )
-        self.status, self.picture, self.table = Status(), Picture(), widgets.HTML()
+        self.status, self.picture, self.table = Status(), Picture(), Prose()
         for button, action in (
             (self.look_button, self.look), (self.do, self.advance),
             (self.back, lambda: self.turn(-1)), (self.next, lambda: self.turn(1)),
@@ -108,12 +110,10 @@ class Glass(Living, widgets.VBox):  # type: ignore[misc]
         self.do.disabled = False
         with self.picture.hold_sync():
             self.picture.png, self.picture.alt = page.png, page.alt
-        self.table.value = (
-            f"{STYLE}<details><summary>The numbers as a table</summary>"
-            '<div style="overflow:auto;max-height:300px">'
-            + page.table.to_html(float_format="{:.4f}".format, border=0, classes="ikteach-glass")
-            + "</div></details>"
-        )
+        self.table.value = STYLE + Markup(
+            "<details><summary>The numbers as a table</summary>"
+            '<div style="overflow:auto;max-height:300px">{}</div></details>'
+        ).format(table(page.table, "{:.4f}", kind="ikteach-glass"))
         self.status.say(
             f"Page {self.number + 1} of {len(PAGES)}: {page.title}. Tick "
             f"{self.session.ticks + 1} by {self.method.value}. {page.text}"

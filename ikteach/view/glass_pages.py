@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ikteach.arrays import Array
+from ikteach.markup import as_label
 from ikteach.motion.anatomy import Anatomy
 from ikteach.view.skin import BLUE, GREEN, ORANGE, PURPLE, RED, SKY
 
@@ -217,11 +218,11 @@ def _bars(axes: Axes, labels: Sequence[str], groups: dict[str, Array], first: in
     at = np.arange(len(labels))
     for i, (name, values) in enumerate(groups.items()):
         axes.bar(
-            at + (i - (len(groups) - 1) / 2) * width, values, width, label=name,
+            at + (i - (len(groups) - 1) / 2) * width, values, width, label=as_label(name),
             color=COLOURS[(i + first) % len(COLOURS)], hatch=HATCHES[(i + first) % len(HATCHES)],
             edgecolor="white", linewidth=0.4,
         )  # fmt: skip
-    axes.set_xticks(at, list(labels))
+    axes.set_xticks(at, list(map(as_label, labels)))
     axes.axhline(0, color="0.3", lw=0.8)
     axes.grid(axis="y", alpha=0.3)
     axes.legend(fontsize=8, ncols=len(groups))
@@ -236,9 +237,10 @@ def _heat(
     image = axes.imshow(matrix, cmap=SIGNED, vmin=-most, vmax=most, aspect="auto")
     small = 8 if len(columns) <= 14 else 7
     turned = 60 if max(map(len, columns), default=0) > 2 else 0
-    axes.set_xticks(range(len(columns)), list(columns), rotation=turned, fontsize=small,
+    across, down = list(map(as_label, columns)), list(map(as_label, rows))
+    axes.set_xticks(range(len(columns)), across, rotation=turned, fontsize=small,
                     ha="right" if turned else "center", rotation_mode="anchor")  # fmt: skip
-    axes.set_yticks(range(len(rows)), list(rows), fontsize=small)
+    axes.set_yticks(range(len(rows)), down, fontsize=small)
     if figure is not None:
         figure.colorbar(image, ax=axes, pad=0.01)
     if numbers and matrix.size <= 400:

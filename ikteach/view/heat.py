@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from ikteach.markup import as_label
 from ikteach.view.picture import Still
 
 FEW = 1e-12  # an entry below it counts as zero
@@ -21,8 +22,8 @@ def heat(table: pd.DataFrame, *, title: str, unit: str) -> Still:
     image = axes.imshow(values, cmap="PuOr_r", vmin=-most, vmax=most, aspect="auto")
     down, across = np.nonzero(abs(values) < FEW)
     axes.plot(across, down, ".", color="0.6", ms=3)
-    axes.set_xticks(range(columns), [str(name) for name in table.columns], rotation=90, fontsize=8)
-    axes.set_yticks(range(rows), [str(name) for name in table.index], fontsize=8)
+    axes.set_xticks(range(columns), list(map(as_label, table.columns)), rotation=90, fontsize=8)
+    axes.set_yticks(range(rows), list(map(as_label, table.index)), fontsize=8)
     axes.set_title(title)
     figure.colorbar(image, ax=axes, label=unit, shrink=0.9)
     out = io.BytesIO()

@@ -7,6 +7,7 @@ from typing import Any
 
 import ipywidgets as widgets
 
+from ikteach.markup import Markup, plain
 from ikteach.motion.gait import MOTIONS
 from ikteach.motion.session import Session
 from ikteach.motion.step import BUSS_CAPS
@@ -14,6 +15,7 @@ from ikteach.names import unknown
 from ikteach.solvers import SOLVERS, Solver
 from ikteach.view.ball import Ball
 from ikteach.view.controls import SLIDERS
+from ikteach.view.prose import Prose
 from ikteach.view.stage import CAMERAS, LAYERS
 
 Tell = Callable[[str, Any], None]
@@ -94,7 +96,7 @@ class MethodPanel(Panel):
         }
         self.mix = {
             f"mix.{name}": widgets.Dropdown(
-                options=list(SOLVERS), value="dls", description=name, style=LABEL
+                options=list(SOLVERS), value="dls", description=plain(name), style=LABEL
             )
             for name in session.effectors.names
         }
@@ -195,9 +197,12 @@ def control_panel(session: Session) -> Panel:
                 "forward": widgets.Checkbox(description="moving forward", indent=False),
                 "wounded": widgets.Checkbox(description="wounded", indent=False),
             },
-            widgets.HTML(
-                "<p>A wound as the solver knows it is a <b>mobility</b>. As the thesis draws it, "
-                "the pose is changed after the solve: <b>drawn ×</b> and <b>drawn +</b>.</p>"
+            Prose(
+                Markup(
+                    "<p>A wound as the solver knows it is a <b>mobility</b>. As the thesis draws "
+                    "it, the pose is changed after the solve: <b>drawn ×</b> and <b>drawn +</b>."
+                    "</p>"
+                )
             ),
             {"joint": joint},
             {"mobility": slider("mobility", 1.0, 0.0, 1.0, 0.05)},

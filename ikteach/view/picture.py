@@ -1,12 +1,12 @@
 """A picture made in the kernel, with words for those who cannot see it."""
 
 import base64
-import html
 from dataclasses import dataclass, field
 
 import anywidget
 import traitlets
 
+from ikteach.markup import Markup
 from ikteach.view.closing import Living
 
 _ESM = """
@@ -47,7 +47,6 @@ class Still:
 
     def _repr_html_(self) -> str:
         data = base64.b64encode(self.png).decode()
-        return (
-            f'<img alt="{html.escape(self.alt, quote=True)}" style="max-width:100%" '
-            f'src="data:image/png;base64,{data}">'
-        )
+        return Markup(
+            '<img alt="{}" style="max-width:100%" src="data:image/png;base64,{}">'
+        ).format(self.alt, data)

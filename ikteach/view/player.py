@@ -5,14 +5,17 @@ from typing import Any
 
 import ipywidgets as widgets
 
+from ikteach.markup import Markup
 from ikteach.motion.gait import MOTIONS, WOUND, Gait
 from ikteach.motion.methods import Methods
 from ikteach.motion.path import Path
 from ikteach.motion.session import Session
 from ikteach.study import distances
+from ikteach.view import prose
 from ikteach.view.controls import Controls
 from ikteach.view.lengths import Lengths
 from ikteach.view.live import Live
+from ikteach.view.prose import Prose
 from ikteach.view.scene import Scene
 from ikteach.view.strips import SECONDS, Strips
 
@@ -34,7 +37,7 @@ class GaitPlayer(Live):
         session = Session(methods=methods, **options)
         scene = Scene(session.tree, session.effectors, slot=None)
         super().__init__(session, scene, slot, Strips(session))
-        self._table = widgets.HTML()
+        self._table = Prose()
         self._first = session.gait
         self.controls = Controls(list(session.methods), session)
         self.controls.on_change(self.guarded(self._obey))
@@ -115,16 +118,15 @@ def words(session: Session) -> str:
     return f"A {who}, {wounded}{motion} by {session.method}. From its target: {far}."
 
 
-def table(session: Session, shown: str | None = None) -> str:
-    """The last seconds of each method as a table, in HTML; the one that is `shown` says so."""
+def table(session: Session, shown: str | None = None) -> Markup:
+    """The last seconds of each method as a table; the one that is `shown` says so."""
     tracks = session.tracks(last=round(SECONDS / session.dt))
     if not tracks:
-        return "<p>No tick yet: the table fills when the figure moves.</p>"
+        return Markup("<p>No tick yet: the table fills when the figure moves.</p>")
     frame = distances(tracks).rename(index={shown: f"{shown} (shown)"})
     length = Lengths.of(session.tree, session.effectors)
     frame.loc[:, [*session.effectors.names, "worst"]] *= 0.01 / length.metres
-    return (
-        f"<p>Distance to target in {length.name}, mean of the last 10 s; worst of them; jitter "
-        "(mean ‖Δ²θ‖) in degrees; joints held at limits, on average.</p>"
-        + frame.to_html(float_format="{:.2f}".format, border=0, classes="ikteach-table")
-    )
+    return Markup(
+        "<p>Distance to target in {}, mean of the last 10 s; worst of them; jitter "
+        "(mean ‖Δ²θ‖) in degrees; joints held at limits, on average.</p>{}"
+    ).format(length.name, prose.table(frame, "{:.2f}"))

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from ikteach.arrays import Array
 from ikteach.body import Effectors, Tree
+from ikteach.markup import as_label
 from ikteach.view.picture import Still
 from ikteach.view.skin import EFFECTOR_COLOURS
 
@@ -37,9 +38,9 @@ def phase_plot(table: pd.DataFrame) -> Still:
         for i, (effector, error) in enumerate(table[method].items()):
             colour, style = EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)], STYLES[i % len(STYLES)]
             axes.semilogy(
-                table.index, np.maximum(error, LEAST), style, color=colour, label=effector
+                table.index, np.maximum(error, LEAST), style, color=colour, label=as_label(effector)
             )
-        axes.set(title=method, xlabel="phase of the cycle", xlim=(0, 1))
+        axes.set(title=as_label(method), xlabel="phase of the cycle", xlim=(0, 1))
         axes.grid(alpha=0.3)
     panels[0].set_ylabel("distance to target [m]")
     panels[0].legend(fontsize=7)

@@ -11,8 +11,10 @@ from ikteach.body import forward, jacobian, locate
 from ikteach.body.extent import extent
 from ikteach.body.figures import TOGETHER, Figure
 from ikteach.body.partials import by_differences
+from ikteach.markup import Markup, plain
 from ikteach.view.bench import WIDE, Bench, Shown, choice, log_slider
 from ikteach.view.lengths import Lengths, digits_of, round_step
+from ikteach.view.prose import grid
 from ikteach.view.scene import Scene
 
 WAYS = ("v × (s − p)", "finite differences")
@@ -110,17 +112,12 @@ class Poser(SceneBench):
         s = locate(forward(tree, theta), effectors)
         unit = Lengths.of_places(self.scene.stage.extent.radius)
         self.scene.show(theta, s)
-        rows = "".join(
-            f"<tr><th scope='row' style='text-align:left'>{name}</th>"
-            + "".join(f"<td>{unit.number(x, 3)}</td>" for x in row)
-            + "</tr>"
+        rows = [
+            [name, *(unit.number(x, 3) for x in row)]
             for name, row in zip(effectors.names, s, strict=True)
-        )
-        table = (
-            f"<table class='ikteach-table'><caption>where the effectors are [{unit.name}]</caption>"
-            "<thead><tr><th></th><th>x (left)</th><th>y (up)</th><th>z (forward)</th></tr></thead>"
-            f"<tbody>{rows}</tbody></table>"
-        )
+        ]
+        heads = ["", "x (left)", "y (up)", "z (forward)"]
+        table = grid(heads, rows, f"where the effectors are [{unit.name}]")
         places = ", ".join(
             f"{name} ({', '.join(unit.number(x, 2) for x in row)})"
             for name, row in zip(effectors.names, s, strict=True)
@@ -170,7 +167,9 @@ class ColumnPoser(Poser):
             if length > least
         )
         return Shown(
-            b"", f"{words} Lengths: {lengths}.", f"<p>{words}<br>Lengths [m/rad]: {lengths}.</p>"
+            b"",
+            f"{words} Lengths: {lengths}.",
+            Markup("<p>{}<br>Lengths [m/rad]: {}.</p>").format(words, lengths),
         )
 
 
@@ -224,7 +223,7 @@ class Dial(NamedTuple):
         """A slider for it, with its ends in its label."""
         return widgets.FloatSlider(
             value=self.value, min=self.low, max=self.high, step=self.step,
-            description=f"{name} ({self.low:.4g}…{self.high:.4g}{self.unit})",
+            description=plain(f"{name} ({self.low:.4g}…{self.high:.4g}{self.unit})"),
             style={"description_width": "175px"}, readout_format=f".{digits_of(self.step)}f",
             layout=widgets.Layout(width="auto"),
         )  # fmt: skip
@@ -235,4 +234,4 @@ def _moves(figure: Figure, joint: str) -> str:
     effectors = figure.effectors
     carried = effectors.carried[:, figure.tree.index(joint)]
     names = [name for name, moves in zip(effectors.names, carried, strict=True) if moves]
-    return f"moves {' and '.join(names)}" if names else "moves no effector"
+    return plain(f"moves {' and '.join(names)}") if names else "moves no effector"

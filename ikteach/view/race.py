@@ -1,12 +1,12 @@
 """Chapter 8's widget: a figure for each method, one set of targets, one clock, one log."""
 
-import html
 from math import radians
 from typing import Any
 
 import ipywidgets as widgets
 import numpy as np
 
+from ikteach.markup import Markup
 from ikteach.motion import BUSS_CAPS
 from ikteach.motion.gait import stature
 from ikteach.motion.methods import Methods
@@ -16,6 +16,7 @@ from ikteach.view.controls import motions
 from ikteach.view.lengths import Lengths
 from ikteach.view.live import Live
 from ikteach.view.player import other_motion, table
+from ikteach.view.prose import Prose
 from ikteach.view.scene import Scene
 from ikteach.view.strips import SECONDS, Strips
 
@@ -51,7 +52,7 @@ class Race(Live):
         )
         self._first = session.gait
         super().__init__(session, scene, slot, Strips(session))
-        self._table = widgets.HTML()
+        self._table = Prose()
         step, reset = (widgets.Button(description=words) for words in ("Step", "Reset"))
         speed = session.gait.speed
         self.controls = {
@@ -113,7 +114,7 @@ class Race(Live):
     def report(self) -> None:
         """Bring words and tables up to date."""
         self.scene.driver.description = self.words
-        whose = f"<p>On the left above: the effectors of {html.escape(self.session.method)}.</p>"
+        whose = Markup("<p>On the left above: the effectors of {}.</p>").format(self.session.method)
         self._table.value = whose + table(self.session)
 
     def _obey(self, name: str) -> None:

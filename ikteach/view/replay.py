@@ -14,6 +14,7 @@ from PIL import Image
 
 from ikteach.arrays import Array, Index
 from ikteach.body import Effectors, Tree
+from ikteach.markup import as_label
 from ikteach.motion.log import Log
 from ikteach.view.acting import Actor
 from ikteach.view.closing import Living
@@ -206,7 +207,12 @@ def error_picture(run: Log, error: Array) -> tuple[bytes, list[float]]:
     for i, name in enumerate(run.effectors.names):
         colour, style = EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)], STYLES[i % len(STYLES)]
         axes.semilogy(
-            run.clock, np.maximum(error[:, i], least), style, color=colour, label=name, lw=1.6
+            run.clock,
+            np.maximum(error[:, i], least),
+            style,
+            color=colour,
+            label=as_label(name),
+            lw=1.6,
         )
     changes = [e.tick * run.dt for e in run.events if e.run == _last_run(run)]
     changes = [at for at in changes if run.clock[0] <= at <= run.clock[-1]]

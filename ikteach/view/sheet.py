@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
 from ikteach.arrays import Array
+from ikteach.markup import as_label
 from ikteach.view.skin import DARK, LIGHT, Ball, Limb, Part
 from ikteach.view.stage import FIELD, Stage, picture_axes
 
@@ -95,7 +96,7 @@ class Sheet:
         shape = "s" if name.endswith(".r") else "o"
         self._axes.plot(
             [x], [y], shape, color=colour, ms=2 * radius * self._points, zorder=BEFORE,
-            label=legend, alpha=0.85, mec="white", mew=0.8,
+            label=None if legend is None else as_label(legend), alpha=0.85, mec="white", mew=0.8,
         )  # fmt: skip
 
     def dots(self, points: Array, colour: str, size: float) -> None:
@@ -120,7 +121,9 @@ class Sheet:
     def words(self, at: Array, text: str, colour: str) -> None:
         """Words at a point."""
         x, y, _ = self._see(at)
-        self._axes.text(x, y, text, color=colour, ha="center", va="center", zorder=BEFORE, size=10)
+        self._axes.text(
+            x, y, as_label(text), color=colour, ha="center", va="center", zorder=BEFORE, size=10
+        )
 
     def _see(self, points: Array) -> Array:
         """x, y in the picture and nearness to the eye, (..., 3)."""

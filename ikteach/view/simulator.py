@@ -1,6 +1,5 @@
 """The human motion simulator of chapter 10: a cursor to move, and a figure that reaches for it."""
 
-import html
 from collections.abc import Callable
 from dataclasses import replace
 from math import degrees, radians
@@ -12,11 +11,13 @@ import pandas as pd
 
 from ikteach.arrays import Array
 from ikteach.body import Effectors
+from ikteach.markup import Markup
 from ikteach.motion.reach import Reach, Reaching
 from ikteach.study import standings
 from ikteach.view import solids
 from ikteach.view.bench import choice, slider
 from ikteach.view.live import Live
+from ikteach.view.prose import Prose, table
 from ikteach.view.scene import CAMERAS, Scene
 from ikteach.view.skin import RED
 from ikteach.view.targets import Targets
@@ -81,7 +82,7 @@ class Simulator(Live):
             slot=None,
         )
         self.targets.on_change(self.guarded(lambda _, place: self._put(place)))
-        self._cursor, self._table = widgets.HTML(), widgets.HTML()
+        self._cursor, self._table = Prose(), Prose()
         self.controls = self._make_controls()
         panel = widgets.VBox(
             [
@@ -165,13 +166,12 @@ class Simulator(Live):
         """Bring words and table up to date."""
         session = self.session
         mark = "○ white" if session.within else "● red"
-        style = f"background:{WHITE if session.within else RED};color:#000;padding:1px 8px;"
+        colour = WHITE if session.within else RED
         self.scene.driver.description = self.words
-        self._cursor.value = (
-            '<div role="status" class="ikteach-cursor">cursor '
-            f'<b style="{style}border:1px solid #444;border-radius:8px">{mark}</b> '
-            f"{html.escape(session.words)}</div>"
-        )
+        self._cursor.value = Markup(
+            '<div role="status" class="ikteach-cursor">cursor <b style="background:{};color:#000;'
+            'padding:1px 8px;border:1px solid #444;border-radius:8px">{}</b> {}</div>'
+        ).format(colour, mark, session.words)
         self._table.value = _table(session)
 
 
@@ -182,9 +182,7 @@ def _narrow(label: str, value: float, low: float, high: float, step: float) -> A
     return made
 
 
-def _table(session: Reaching) -> str:
-    table = standings(session).rename(index={session.method: f"{session.method} (shown)"})
-    table["ticks"] = ["–" if pd.isna(ticks) else ticks for ticks in table["ticks"]]
-    return table.to_html(
-        float_format="{:.3g}".format, na_rep="–", border=0, classes="ikteach-table"
-    )
+def _table(session: Reaching) -> Markup:
+    frame = standings(session).rename(index={session.method: f"{session.method} (shown)"})
+    frame["ticks"] = ["–" if pd.isna(ticks) else ticks for ticks in frame["ticks"]]
+    return table(frame, "{:.3g}")

@@ -73,7 +73,7 @@ class Slope:
             f"Distance now {now:.3f} m. A step with {gain:.2f} of the best α promises "
             f"{np.sqrt(marks.promised[3]):.3f} m and leaves {left:.3f} m."
         )
-        return Shown(self._canvas.png(), words, f"<p>{words}</p>")
+        return Shown(self._canvas.png(), words, words)
 
     def take(self) -> None:
         """Take the step that is shown."""

@@ -6,6 +6,7 @@ import numpy as np
 import pythreejs as three
 
 from ikteach.arrays import ArrayLike
+from ikteach.markup import brief
 from ikteach.view.skin import EFFECTOR_COLOURS
 from ikteach.view.stage import SQUARE
 
@@ -57,6 +58,7 @@ def labels(
     text: str, colour: str, height: float, places: Sequence[ArrayLike]
 ) -> list[three.Sprite]:
     """The same words at each of these places, which always face the camera."""
+    text = brief(text)
     words = three.TextTexture(string=text, color=colour, size=64)  # on a square as wide as it
     look = three.SpriteMaterial(map=words, transparent=True, depthWrite=False)
     width = height * max(0.55 * len(text), 1)

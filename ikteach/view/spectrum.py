@@ -9,12 +9,14 @@ from matplotlib.figure import Figure
 from ikteach.arrays import Array
 from ikteach.body import forward, jacobian, locate
 from ikteach.body.figures import human
+from ikteach.markup import Markup
 from ikteach.motion import gait, step
 from ikteach.solvers import sdls
 from ikteach.solvers.response import Directions, directions, factors, filtered
 from ikteach.view.bench import Bench, Canvas, Shown, log_slider, slider
 from ikteach.view.closing import making
 from ikteach.view.plots import bones
+from ikteach.view.prose import grid
 from ikteach.view.skin import BLUE, EFFECTOR_COLOURS, GREEN, ORANGE
 
 TREE, EFFECTORS = human()
@@ -97,7 +99,9 @@ class Spectrum:
             f"Answers in rad/m: "
             f"1/σ is {pinv:.3f}, damped {damped:.3f}, SDLS takes {_number(selected)}."
         )
-        return Shown(self._canvas.png(), words, f"<p>{words}</p>{_table(found, answers)}")
+        return Shown(
+            self._canvas.png(), words, Markup("<p>{}</p>").format(words) + _table(found, answers)
+        )
 
     def _draw(self, p: Array, s: Array, u: Array) -> None:
         """The bones, and from each effector the way that it goes."""
@@ -114,18 +118,12 @@ class Spectrum:
                 tip.set_data([end[x]], [end[1]])
 
 
-def _table(found: Directions, answers: list[Array]) -> str:
-    """All directions in numbers, as HTML."""
-    heads = ["i", "σ [m/rad]", "uᵀe [m]", "N", "M", "γ [°]", "1/σ", "σ/(σ²+λ²)", "SDLS"]
+def _table(found: Directions, answers: list[Array]) -> Markup:
+    """All directions in numbers."""
+    heads = ["σ [m/rad]", "uᵀe [m]", "N", "M", "γ [°]", "1/σ", "σ/(σ²+λ²)", "SDLS"]
     columns = [found.sigma, found.alpha, found.N, found.M, np.degrees(found.gamma), *answers]
-    body = "".join(
-        f"<tr><th>{i}</th>" + "".join(f"<td>{_number(value)}</td>" for value in row) + "</tr>"
-        for i, row in enumerate(np.transpose(columns), start=1)
-    )
-    head = "".join(f"<th>{name}</th>" for name in heads)
-    return (
-        f'<table class="ikteach-table"><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>'
-    )
+    rows = [[i, *map(_number, row)] for i, row in enumerate(np.transpose(columns), start=1)]
+    return grid(["i", *heads], rows)
 
 
 def _number(value: float) -> str:

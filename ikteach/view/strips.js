@@ -51,6 +51,12 @@ function render({ model, el }) {
   };
 }
 
+function svg(name, attributes) {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  return made;
+}
+
 function figure(root, panel) {
   const box = document.createElement("div");
   box.style.cssText = "flex:1 1 280px;max-width:440px";
@@ -62,10 +68,12 @@ function figure(root, panel) {
   legend.style.cssText = "display:flex;flex-wrap:wrap;gap:2px 12px;font-size:12px";
   for (const line of panel.lines) {
     const entry = document.createElement("span");
-    entry.innerHTML =
-      `<svg width="30" height="8" aria-hidden="true"><line x1="0" y1="4" x2="30" y2="4" ` +
-      `stroke="${line.colour}" stroke-width="2.5" stroke-dasharray="${line.dashes.join(" ")}"/></svg> `;
-    entry.append(line.name);
+    const sample = svg("svg", { width: 30, height: 8, "aria-hidden": true });
+    sample.append(svg("line", {
+      x1: 0, y1: 4, x2: 30, y2: 4,
+      stroke: line.colour, "stroke-width": 2.5, "stroke-dasharray": line.dashes.join(" "),
+    }));
+    entry.append(sample, " ", line.name);
     legend.appendChild(entry);
   }
   box.append(canvas, legend);

@@ -86,7 +86,7 @@ class Tradeoff:
             f"{near[best]:.3f} m and jitter {calm[best]:.4f} rad. At {TIMES[frame]:.2f} s the hand "
             f"is {run.error[frame, i, 0] / scale:.3f} m from the target."
         )
-        return Shown(self._canvas.png(), words, f"<p>{words}</p>")
+        return Shown(self._canvas.png(), words, words)
 
     def _outline(self, scale: float, theta: Array) -> Array:
         """x and y of joints and hand, (2, 4) [unit]."""

@@ -25,6 +25,7 @@ from ikteach.view.glass import Glass
 from ikteach.view.keeping import Keeper
 from ikteach.view.live import Live
 from ikteach.view.player import table, words
+from ikteach.view.prose import Prose
 from ikteach.view.recorder import Recorder
 from ikteach.view.replay import Replay
 from ikteach.view.scene import Scene
@@ -84,7 +85,7 @@ class Workbench(Live):
         )
         self._stage = widgets.VBox([self.bar.widget, self.scene.widget])
         self._fit()
-        self._table, self._aside = widgets.HTML(), widgets.VBox()
+        self._table, self._aside = Prose(), widgets.VBox()
         glass = widgets.Accordion(
             [self.glass], titles=["One iteration under a glass"], selected_index=None
         )

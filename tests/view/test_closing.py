@@ -30,6 +30,7 @@ from ikteach.view.handles import Handles
 from ikteach.view.keeping import Keeper
 from ikteach.view.picture import Picture
 from ikteach.view.pointing import Curve, Rows
+from ikteach.view.prose import Prose
 from ikteach.view.race import Race
 from ikteach.view.recorder import Recorder
 from ikteach.view.replay import Replay
@@ -94,6 +95,7 @@ PARTS: dict[Any, Callable[[], Any]] = {
     Driver: lambda: ikteach.view.Scene(*arm(), slot=None).driver,
     Handles: lambda: Targets(ikteach.view.Scene(*arm(), slot=None), [[1, 1, 0]], slot=None).handles,
     Picture: Picture,
+    Prose: Prose,
     Rows: Rows,
     Status: Status,
     Strips: lambda: Strips(Session()),
