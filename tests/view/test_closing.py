@@ -141,33 +141,39 @@ def of_notebooks() -> dict[str, set[str]]:
     return found
 
 
-def all_that_live() -> set[type]:
+def full(thing: Any) -> str:
+    return f"{thing.__module__}.{thing.__qualname__}"
+
+
+def all_that_live() -> set[str]:
     """Every class of `view` and `course` that lives in a cell, and that no other is made of."""
     for room in (ikteach.view, ikteach.course):
         for module in pkgutil.walk_packages(room.__path__, f"{room.__name__}."):
             if not module.name.startswith(("ikteach.course.lecture", "ikteach.course.solutions")):
                 importlib.import_module(module.name)
-    found, waiting = set[type](), Living.__subclasses__()
+    found, waiting = set[str](), Living.__subclasses__()
     while waiting:
         one = waiting.pop()
-        waiting += one.__subclasses__()
-        if one.__module__.startswith("ikteach.") and not one.__subclasses__():
-            found.add(one)
+        below = [each for each in one.__subclasses__() if each.__module__.startswith("ikteach.")]
+        waiting += below
+        if one.__module__.startswith("ikteach.") and not below:
+            found.add(full(one))
     return found
 
 
 def test_none_is_forgotten() -> None:
-    known = FIGURES.keys() | PARTS.keys()
-    assert {getattr(ikteach.view, name) for name in ikteach.view.__all__} <= known
+    known = set(map(full, FIGURES.keys() | PARTS.keys()))
+    assert {full(getattr(ikteach.view, name)) for name in ikteach.view.__all__} <= known
     imported = {
-        getattr(importlib.import_module(module), name)
+        full(getattr(importlib.import_module(module), name))
         for module, names in of_notebooks().items()
         for name in names - NO_WIDGETS
     }
     assert len(imported) > 10
     assert imported <= known
-    within = {"CursorScene", "Question"}  # of Simulator; of predict and quiz
-    assert {one for one in all_that_live() if one.__name__ not in within} <= known
+    # Of Simulator; of predict and quiz.
+    within = {"ikteach.view.simulator.CursorScene", "ikteach.course.widget.Question"}
+    assert all_that_live() - within <= known
 
 
 @by_name(FIGURES)
