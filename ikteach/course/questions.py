@@ -5,9 +5,11 @@ The widgets are made in `ikteach.course.widget`, imported when the first one is 
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import inf
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
+from ikteach.checks import shown
 from ikteach.course import record
 from ikteach.course.notice import box
 from ikteach.files import bounded, plain
@@ -39,8 +41,10 @@ def predict(
     from ikteach.course.widget import Question
 
     kind = "number" if numbers is not None else "ranking" if ranking else "choice"
-    if numbers is None and len(options) < 2:
-        raise ValueError(f"{key!r} needs options to choose from, or numbers=(low, high, unit)")
+    if numbers is None:
+        options = _choices(key, options)
+    else:
+        numbers = _range(key, numbers)
     known = record.entry("predictions", key)
 
     def answered(answer: Any) -> str:
@@ -64,6 +68,34 @@ def predict(
 
 
 NO_ANSWER = "That is no answer to this question."
+
+
+def _choices(key: str, options: Sequence[str]) -> list[str]:
+    """The options as a list; TypeError or ValueError says what they are not."""
+    from ikteach.view import doors
+
+    choices = doors.words(f"the options of {key!r}", options)
+    if len(set(choices)) < max(2, len(choices)):
+        raise ValueError(
+            f"{key!r} needs options to choose from, two or more that differ, or "
+            "numbers=(low, high, unit)"
+        )
+    return choices
+
+
+def _range(key: str, numbers: Any) -> tuple[float, float, str]:
+    """Low, high and unit; TypeError or ValueError says what they are not."""
+    from ikteach.view import doors
+
+    if not (isinstance(numbers, tuple | list) and len(numbers) == 3):
+        raise TypeError(f"the numbers of {key!r} must be (low, high, unit), not {shown(numbers)}")
+    low, high, unit = numbers
+    doors.within(f"the low end of {key!r}", low, -inf, inf)
+    doors.within(f"the high end of {key!r}", high, low, inf)
+    doors.text(f"the unit of {key!r}", unit)
+    return low, high, unit
+
+
 CHANGE = " You can change it until the result is shown."
 LOCKED = " It is locked: the result has been shown."
 
@@ -166,6 +198,11 @@ def quiz(
     from ikteach.course.widget import Question
     from ikteach.names import unknown
 
+    options = _choices(key, options)
+    if not isinstance(why, str | Mapping):
+        raise TypeError(
+            f"why of {key!r} must be a sentence or {{option: sentence}}, not {shown(why)}"
+        )
     reasons = dict.fromkeys(options, why) if isinstance(why, str) else dict(why)
     for name in (right, *reasons):
         if name not in options:

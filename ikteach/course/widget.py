@@ -8,6 +8,8 @@ import anywidget
 import traitlets
 
 from ikteach.markup import Markup, untouched
+from ikteach.view import doors
+from ikteach.view.acting import in_words
 from ikteach.view.closing import Living, occupant
 
 
@@ -32,13 +34,19 @@ class Question(Living, anywidget.AnyWidget):
     status = traitlets.Unicode().tag(sync=True)
 
     def __init__(self, key: str, on_answer: Callable[[Any], str], **traits: Any) -> None:
+        doors.text("the key of a question", key)
+        for name in ("question", "note"):
+            doors.text(f"the {name} of {key!r}", traits.get(name, ""))
         self.slot, self._on_answer = f"question {key}", on_answer
         super().__init__(**traits)
         self.observe(self._sent, "asked")
 
     def _sent(self, _: Any) -> None:
         if not self.locked:
-            self.status = self._on_answer(self.answer)
+            try:
+                self.status = self._on_answer(self.answer)
+            except Exception as error:
+                self.status = in_words(error)
 
     @classmethod
     def living(cls, key: str) -> "Question | None":

@@ -9,6 +9,8 @@ from matplotlib.artist import Artist
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from ikteach.checks import function
+from ikteach.view import doors
 from ikteach.view.acting import Actor, in_words
 from ikteach.view.closing import Living
 from ikteach.view.picture import Picture
@@ -63,14 +65,15 @@ class Bench(Living, widgets.VBox):  # type: ignore[misc]
         slot: str | None,
         buttons: Mapping[str, Callable[[], None]] | None = None,
     ) -> None:
-        self.controls, self.slot = dict(controls), slot
-        self._show, self._stale = show, False
+        self.controls, self.slot = doors.named("controls", controls, _control), slot
+        self._show, self._stale = function("show", show), False
+        buttons = doors.named("buttons", buttons or {}, function)
         self._waiting: list[Callable[[], None]] = []
         self._act = Actor()
         self.status = Status()
         self._picture, self._below = Picture(), Prose()
-        self.buttons = {label: widgets.Button(description=label) for label in buttons or {}}
-        for label, act in (buttons or {}).items():
+        self.buttons = {label: widgets.Button(description=label) for label in buttons}
+        for label, act in buttons.items():
             self.buttons[label].on_click(lambda _, act=act: self._after(act))
         for control in self.controls.values():
             control.observe(lambda _: self._after(None), "value")
@@ -118,6 +121,10 @@ class Bench(Living, widgets.VBox):  # type: ignore[misc]
         """The live widget, and beside it a still for places without a kernel."""
         bundle = super()._repr_mimebundle_(**kwargs)
         return {**bundle, "image/png": self._picture.png, "text/plain": self.words}
+
+
+def _control(name: str, value: Any) -> None:
+    doors.has(name, value, "a widget with a value", "observe", "value")
 
 
 def slider(label: str, value: float, low: float, high: float, step: float) -> Any:

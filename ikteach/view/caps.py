@@ -10,9 +10,12 @@ from ikteach.body.figures import human
 from ikteach.motion import gait, per_chain, whole
 from ikteach.motion.experiment import capped
 from ikteach.solvers import Solver, pseudoinverse
+from ikteach.view import doors
 from ikteach.view.bench import slider
 from ikteach.view.closing import Living
 from ikteach.view.player import GaitPlayer
+
+CAP, SIDE = (0.5, 45.0), (0.3, 2.0)  # from, to [° a step] and [m]
 
 
 def rules(degrees: float) -> dict[str, Solver]:
@@ -35,12 +38,14 @@ class CapPlayer(Living, widgets.VBox):  # type: ignore[misc]
         self, degrees: float = 5.0, x_hand: float = 0.9, *, slot: str | None = "caps"
     ) -> None:
         self.slot = slot
+        degrees = doors.within("degrees", degrees, *CAP)
+        x_hand = doors.within("x_hand", x_hand, *SIDE)
         start = replace(gait.walking, x_hand=x_hand)
         self.player = GaitPlayer(rules(degrees), slot=None, gait=start, method="whole step")
         self.player.controls.method.description = "Cap"
         self.controls = {
-            "cap": slider("cap [° a step]", degrees, 0.5, 45.0, 0.5),
-            "x_hand": slider("hands to the side [m]", x_hand, 0.3, 2.0, 0.05),
+            "cap": slider("cap [° a step]", degrees, *CAP, 0.5),
+            "x_hand": slider("hands to the side [m]", x_hand, *SIDE, 0.05),
         }
         self.status = self.player.status
         for name, control in self.controls.items():

@@ -8,11 +8,14 @@ So nothing here closes a widget but `close_all`, which leaves nobody behind who 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import wraps
+from inspect import signature
 from threading import local
 from typing import Any
 
 import ipywidgets as widgets
 from ipywidgets.widgets.widget import _instances as living  # {id: widget}, of all that live
+
+from ikteach.names import unknown
 
 _slots: dict[str, "Living"] = {}
 _now = local()  # .parts: the list of what is made now, in this thread
@@ -41,7 +44,7 @@ class Living:
     def close(self) -> None:
         """Stop it, and free all that the page and the kernel hold of it."""
         if occupant(self.slot) is self:
-            del _slots[str(self.slot)]
+            _slots.pop(str(self.slot), None)
         itself = [self] if isinstance(self, widgets.Widget) else []
         close_all(*itself, *self._belongings)
         self._belongings = ()
@@ -68,13 +71,22 @@ def close_all(*roots: widgets.Widget) -> None:
 def _whole(make: Callable[..., None]) -> Callable[..., None]:
     """An `__init__` that leaves nothing behind when it fails, and remembers what it made."""
 
+    taken = signature(make).parameters
+    open_ended = any(one.kind is one.VAR_KEYWORD for one in taken.values())
+
     @wraps(make)
     def made(self: Living, *arguments: Any, **options: Any) -> None:
+        for name in options:
+            if name not in taken and not open_ended:
+                known = list(taken)[1:]  # but for self
+                raise TypeError(unknown(f"option of {type(self).__name__}", name, known))
         if "_belongings" in vars(self):  # of a class above: the outermost one does it for all
             return make(self, *arguments, **options)
         self._belongings = ()
         with making() as parts:
             make(self, *arguments, **options)
+            if not isinstance(self.slot, str | None):
+                raise TypeError(f"a slot is a name, or None for none, not {self.slot!r}")
         self._belongings = tuple(parts)
         before = occupant(self.slot)
         if before is not None:

@@ -4,9 +4,11 @@ from collections.abc import Callable
 
 import ipywidgets as widgets
 
+from ikteach.checks import function
 from ikteach.markup import Markup
 from ikteach.motion.anatomy import Anatomy, anatomy
 from ikteach.motion.session import Session
+from ikteach.view import doors
 from ikteach.view.acting import Actor
 from ikteach.view.closing import Living
 from ikteach.view.glass_pages import PAGES, Names, Page
@@ -33,7 +35,8 @@ class Glass(Living, widgets.VBox):  # type: ignore[misc]
         self, session: Session, stop: Callable[[], None] = lambda: None,
         show: Callable[[], None] = lambda: None, *, slot: str | None = "glass",
     ) -> None:  # fmt: skip
-        self.session, self._stop, self._show, self.slot = session, stop, show, slot
+        self.session, self.slot = doors.a(Session, "session", session), slot
+        self._stop, self._show = function("stop", stop), function("show", show)
         self.names = Names(session.effectors.names, session.tree.names)
         self.tick: Anatomy | None = None
         self._pages: dict[int, Page] = {}  # of this tick, drawn when they are first opened

@@ -5,9 +5,11 @@ from pathlib import Path
 
 import ipywidgets as widgets
 
+from ikteach.checks import function
 from ikteach.formats.session import load, save
 from ikteach.motion.log import Log
 from ikteach.motion.session import Session
+from ikteach.view import doors
 from ikteach.view.acting import Actor
 from ikteach.view.closing import Living, close_all
 from ikteach.view.replay import Replay
@@ -26,8 +28,9 @@ class Keeper(Living, widgets.VBox):  # type: ignore[misc]
         self, session: Session, open_run: Callable[[Log], None] | None = None, *,
         folder: str | Path = ".", slot: str | None = "files",
     ) -> None:  # fmt: skip
-        self.session, self.folder, self.slot = session, Path(folder), slot
-        self._open_run = open_run or self._replay
+        self.session, self.slot = doors.a(Session, "session", session), slot
+        self.folder = doors.folder(folder)
+        self._open_run = function("open_run", open_run or self._replay)
         self._act = Actor()
         self.name = widgets.Text(value="session", description="File name")
         self.replace = widgets.Checkbox(

@@ -12,6 +12,7 @@ from ikteach.body.extent import extent
 from ikteach.body.figures import TOGETHER, Figure
 from ikteach.body.partials import by_differences
 from ikteach.markup import Markup, plain
+from ikteach.view import doors
 from ikteach.view.bench import WIDE, Bench, Shown, choice, log_slider
 from ikteach.view.lengths import Lengths, digits_of, round_step
 from ikteach.view.prose import grid
@@ -71,7 +72,7 @@ class Poser(SceneBench):
     """
 
     def __init__(self, figure: Figure, *, slot: str | None = "poser") -> None:
-        self.figure = figure
+        self.figure = figure = doors.figure(figure)
         self._lead = {b: a for a, b in TOGETHER if {a, b} <= set(figure.tree.names)}
         scales = [Dial.of(figure, j) for j in range(len(figure.tree))]
         self._each = np.array([dial.each for dial in scales])

@@ -5,10 +5,22 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike
+from ikteach.checks import numbers
 from ikteach.view.lengths import METRE, Lengths, digits_of
 
 AXES = "xyz"
 KEEP = 200  # moves that can be taken back
+
+
+def _each(name: str, values: ArrayLike, shape: tuple[int, int]) -> Array:
+    """Ends of ranges (k, 3), of one number or of what fits; ValueError names what does not."""
+    ends = numbers(name, values)
+    if np.isnan(ends).any():
+        raise ValueError(f"{name} has no number where it should")
+    try:
+        return np.broadcast_to(ends, shape)
+    except ValueError:
+        raise ValueError(f"{name} must be one number or {shape}, not {ends.shape}") from None
 
 
 class Positions:
@@ -29,11 +41,10 @@ class Positions:
         self.unit, self._digits = unit, digits_of(step / unit.metres)
         self.names = list(names)
         shape = (len(self.names), 3)
-        self._now = np.array(start, dtype=float)
+        self._now = numbers("start", start).copy()
         if self._now.shape != shape:
             raise ValueError(f"{shape[0]} targets need positions {shape}, not {self._now.shape}")
-        self.low = np.broadcast_to(np.asarray(low, dtype=float), shape)
-        self.high = np.broadcast_to(np.asarray(high, dtype=float), shape)
+        self.low, self.high = _each("low", low, shape), _each("high", high, shape)
         self._past: list[Array] = []
         self._tell: list[Callable[[int, Array], None]] = []
         for i, position in enumerate(self._now):

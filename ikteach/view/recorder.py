@@ -11,6 +11,7 @@ import ipywidgets as widgets
 
 from ikteach.formats import movie
 from ikteach.motion.session import Session
+from ikteach.view import doors
 from ikteach.view.acting import Actor
 from ikteach.view.closing import Living
 from ikteach.view.filming import Film, Shot, shot
@@ -38,7 +39,8 @@ class Recorder(Living, widgets.VBox):  # type: ignore[misc]
     def __init__(
         self, session: Session, *, folder: str | Path = ".", slot: str | None = "movie"
     ) -> None:
-        self.session, self.folder, self.slot = session, Path(folder), slot
+        self.session, self.slot = doors.a(Session, "session", session), slot
+        self.folder = doors.folder(folder)
         self._task: asyncio.Task[None] | None = None
         self._stop = False
         self._act = Actor()
@@ -63,7 +65,7 @@ class Recorder(Living, widgets.VBox):  # type: ignore[misc]
             value=0, max=1, description="Movie", style={"bar_color": "#0072b2", **LABEL}
         )
         self.status = Status()
-        self.start.on_click(lambda _: self._act(self.begin))
+        self.start.on_click(lambda _: self._act(self.begin, self.status.fail))
         self.stop.on_click(lambda _: self.halt())
         for one in (self.width, self.height, self.rate, self.seconds, self.which, self.side):
             one.layout.width = "210px"

@@ -16,7 +16,8 @@ from ikteach.arrays import Array, Index
 from ikteach.body import Effectors, Tree
 from ikteach.markup import as_label
 from ikteach.motion.log import Log
-from ikteach.view.acting import Actor
+from ikteach.view import doors
+from ikteach.view.acting import Actor, in_words
 from ikteach.view.closing import Living
 from ikteach.view.filming import Film, Shot
 from ikteach.view.lengths import Lengths, decade
@@ -69,6 +70,9 @@ class Replay(Living, widgets.VBox):  # type: ignore[misc]
     def __init__(
         self, run: Log, scene: Shows | None = None, *, slot: str | None = "replay"
     ) -> None:
+        doors.a(Log, "run", run)
+        if scene is not None:
+            doors.has("scene", scene, "a Scene, or something else with `show`", "show")
         if not len(run):
             raise ValueError("there is nothing to replay: no tick is in the log yet")
         self.run, self.at, self.slot = run, 0, slot
@@ -85,11 +89,10 @@ class Replay(Living, widgets.VBox):  # type: ignore[misc]
         self.method = widgets.Dropdown(options=[AS_SHOWN, *run.methods], description="Method")
         self.curve, self.rows = Curve(), Rows()
         self.words = Status()
-        self.slider.observe(lambda change: self.go(change["new"]), "value")
-        self.curve.observe(lambda change: self.go(change["new"]), "chosen")
-        self.rows.observe(lambda change: self.go(change["new"]), "chosen")
-        self.playing.observe(lambda _: self._act(self._toggle), "value")
-        self.method.observe(lambda _: self._act(self._method_changed), "value")
+        for one, trait in (self.slider, "value"), (self.curve, "chosen"), (self.rows, "chosen"):
+            one.observe(lambda change: self._asked(change["new"]), trait)
+        self.playing.observe(lambda _: self._act(self._toggle, self.words.fail), "value")
+        self.method.observe(lambda _: self._act(self._method_changed, self.words.fail), "value")
         pictures = [] if self._sketch is None else [self._sketch.widget]
         super().__init__(
             [
@@ -109,12 +112,19 @@ class Replay(Living, widgets.VBox):  # type: ignore[misc]
             raise IndexError(f"the log has rows 0 to {len(self.run) - 1}, not {tick}")
         if tick != self.at or tick != self._wanted:
             self._wanted = tick
-            self._act(self._arrive)
+            self._act(self._arrive, self.words.fail)
 
     def end(self) -> None:
         """Stop playing."""
         if self._task is not None:
             self._task.cancel()
+
+    def _asked(self, tick: int) -> None:
+        """Slider, plot or table were moved, by a person or by `_agree`."""
+        try:
+            self.go(tick)
+        except IndexError as error:
+            self.words.fail(in_words(error))
 
     def _arrive(self) -> None:
         if self.at != self._wanted:
@@ -153,6 +163,14 @@ class Replay(Living, widgets.VBox):  # type: ignore[misc]
             self._task = self._act.loop.create_task(self._play())
 
     async def _play(self) -> None:
+        try:
+            await self._go_on()
+        except Exception as error:  # of whoever draws
+            told = in_words(error)
+            self.playing.value = False
+            self._act(lambda: self.words.fail(told))  # after what the button says about itself
+
+    async def _go_on(self) -> None:
         run, told = self.run, monotonic()
         if self.at == len(run) - 1:
             self._wanted = self.at = 0

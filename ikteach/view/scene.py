@@ -14,7 +14,7 @@ from ikteach.arrays import Array, ArrayLike
 from ikteach.body import Effectors, Frames, Tree
 from ikteach.body.rotation import sticks
 from ikteach.names import unknown
-from ikteach.view import flesh, shapes, solids
+from ikteach.view import doors, flesh, shapes, solids
 from ikteach.view.cameras import Cameras
 from ikteach.view.closing import Living, close_all
 from ikteach.view.driver import Driver, Move
@@ -52,6 +52,7 @@ class Scene(Living):
         slot: str | None = "scene",
     ) -> None:  # fmt: skip
         self.slot = slot
+        width, height = doors.scene(tree, effectors, names, apart, width, height)
         self.tree, self.effectors = tree, effectors
         self.stage = stage = Stage(tree, effectors, names, apart)
         unit, f, n, k = stage.unit, len(names), len(tree), len(effectors)

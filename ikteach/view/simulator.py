@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from math import degrees, radians
+from math import degrees, inf, radians
 from typing import Any
 
 import ipywidgets as widgets
@@ -11,10 +11,11 @@ import pandas as pd
 
 from ikteach.arrays import Array
 from ikteach.body import Effectors
+from ikteach.checks import count
 from ikteach.markup import Markup
 from ikteach.motion.reach import Reach, Reaching
 from ikteach.study import standings
-from ikteach.view import solids
+from ikteach.view import doors, solids
 from ikteach.view.bench import choice, slider
 from ikteach.view.live import Live
 from ikteach.view.prose import Prose, table
@@ -71,7 +72,14 @@ class Simulator(Live):
     def __init__(
         self, session: Reaching | None = None, *, slot: str | None = "reach", **options: Any
     ) -> None:
-        session = session if session is not None else Reach(**options)
+        if session is None:
+            session = Reach(**options)
+        elif options:
+            raise TypeError(f"{', '.join(options)}: options are for a session that is made here")
+        doors.has("session", session, "a Reach or a PlanarReach", "cursor", "standing", "room")
+        count("parts", session.parts)
+        if session.max_step is not None:
+            doors.within("max_step", session.max_step, 0, inf)
         super().__init__(session, CursorScene(session), slot)
         self._known = session.cursor  # the one that the handles and sliders know of
         self.targets = Targets(

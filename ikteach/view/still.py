@@ -7,7 +7,7 @@ import numpy as np
 from ikteach.arrays import Array, ArrayLike
 from ikteach.body import Effectors, Frames, Tree
 from ikteach.names import unknown
-from ikteach.view import skin
+from ikteach.view import doors, skin
 from ikteach.view.closing import Living
 from ikteach.view.lengths import Lengths
 from ikteach.view.picture import Picture
@@ -30,6 +30,7 @@ class StillScene(Living):
         slot: str | None = "still",
     ) -> None:  # fmt: skip
         self.slot = slot
+        width, height = doors.scene(tree, effectors, names, apart, width, height)
         self.tree, self.effectors = tree, effectors
         self.stage = Stage(tree, effectors, names, apart)
         self._dark = dark

@@ -9,6 +9,8 @@ import numpy as np
 import traitlets
 
 from ikteach.arrays import Array, ArrayLike
+from ikteach.checks import numbers
+from ikteach.view import doors
 from ikteach.view.acting import in_words
 from ikteach.view.closing import Living
 from ikteach.view.handles import Handles
@@ -51,6 +53,10 @@ class Targets(Living, anywidget.AnyWidget):
         high: ArrayLike | None = None, slot: str | None = "targets",
     ) -> None:  # fmt: skip
         self.slot = slot
+        doors.has("scene", scene, "a Scene or a StillScene", "stage", "show")
+        start = numbers("start", start)
+        if not np.isfinite(start).all():
+            raise ValueError("start is not finite: each target needs three numbers")
         stage = scene.stage
         names = stage.effectors.names
         at = np.asarray(start, dtype=float)

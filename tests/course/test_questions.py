@@ -291,3 +291,12 @@ def test_export_says_what_is_wrong(folder: Path) -> None:
     assert (folder / "predictions.json").read_text() == "{"
     assert "✗" in str(export("b.json"))
     assert "border-left" in export("b.json")._repr_html_()
+
+
+def test_what_goes_wrong_in_an_answer_is_told_under_it() -> None:
+    def breaks(answer: Any) -> str:
+        raise ValueError("no room")
+
+    question = Question("00.breaks", breaks, question="Which?", options=["a", "b"])
+    assert answer(question, "a") == "That did not work: no room"
+    question.close()

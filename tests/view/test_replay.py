@@ -165,3 +165,34 @@ def test_one_tick_is_a_run():
     session = Session()
     session.tick()
     agree(Replay(session.log(), Watcher()), 0)
+
+
+def test_what_goes_wrong_is_told_and_the_replay_goes_on(log):
+    class Breaks(Watcher):
+        wrong = False
+
+        def show(self, theta, targets, *, floor, advance=0.0):
+            if self.wrong:
+                raise ValueError("no picture")
+            super().show(theta, targets, floor=floor, advance=advance)
+
+    async def story():
+        replay = Replay(log, scene := Breaks())
+        asks = (
+            lambda: setattr(replay.slider, "value", 5),
+            lambda: setattr(replay.method, "value", "sdls"),
+            lambda: setattr(replay.playing, "value", True),
+        )
+        for tick, ask in enumerate(asks, start=1):
+            scene.wrong = True
+            ask()
+            await until(lambda: replay.words.wrong == "That did not work: no picture")
+            await until(lambda: not replay.playing.value)
+            scene.wrong = False
+            replay.go(tick)
+            await until(lambda tick=tick: replay.at == tick and replay.words.wrong == "")
+        replay.rows.chosen = 99
+        assert replay.words.wrong == "That did not work: the log has rows 0 to 11, not 99"
+        replay.close()
+
+    asyncio.run(story())
