@@ -126,7 +126,8 @@ def test_what_cannot_be_built_is_said(
 
 LOADS = re.compile(
     r"""<(?:script|link|iframe|img|source|object|embed)[^>]*?(?:src|href|data)\s*=\s*["']?"""
-    r"""(?!data:|[\w./-]+\.(?:png|html)["'])([^"'\s>]+)|@import|url\(\s*["']?http|mathjax""",
+    r"""(?!data:|[\w./-]+\.(?:png|html)["'])([^"'\s>]+)|@import|url\(\s*["']?http|"""
+    r"mathjax(?!_ignore)",
     re.IGNORECASE,
 )
 
