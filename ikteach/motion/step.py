@@ -156,7 +156,7 @@ def step(
         frames = forward(tree, theta)  # which checks θ
     elif isinstance(frames, Frames) and frames.positions.shape != (*pose(tree, theta).shape, 3):
         raise ValueError(f"frames are of poses {frames.positions.shape[:-1]}, not {theta.shape}")
-    fits(effectors, frames)
+    s = locate(frames, effectors)
     targets = goals(effectors, targets)
     solver = solver_of(solver)
     max_step, max_error = _bound("max_step", max_step), _bound("max_error", max_error)
@@ -169,13 +169,13 @@ def step(
     free = tree.mobility if mobility is None else _checked_mobility(tree, mobility)
     batch = _batch(theta, targets, free, max_step, max_error)
 
-    s = locate(frames, effectors)
     J = jacobian(tree, frames, effectors, at=targets if at_targets else s)
     e = aim = _stacked(targets - s)
     if max_error is not None:
         aim = _stacked(clamp_error(targets - s, max_error))
-    for kept in (J, e, aim):
-        kept.setflags(write=False)  # no solver may change them
+        aim.setflags(write=False)
+    J.setflags(write=False)  # no solver may change them
+    e.setflags(write=False)
     shortened = np.zeros(batch, dtype=bool)
 
     def ask_for(s: Array, e: Array) -> Array:
@@ -225,7 +225,7 @@ def _batch(
 
 def _bounds(tree: Tree, theta: Array, free: Array, max_step: Array | None) -> Bounds:
     """The limits; for a joint that is beyond one, from there to as near to it as it may turn."""
-    locked = np.count_nonzero(free) < free.size
+    locked = not (free is tree.mobility and tree.free) and np.count_nonzero(free) < free.size
     if max_step is None and not locked:
         return Bounds(tree.lower, tree.upper)
     far = np.array(np.inf) if max_step is None else max_step

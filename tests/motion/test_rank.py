@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from metamorphic import BODY, Case, in_a_plane
+from metamorphic import BODY, Case, ground_moved, in_a_plane
 from numpy.testing import assert_allclose, assert_array_equal
 from strategies import SEEDS, anybody, poses
 
@@ -79,3 +79,12 @@ def test_the_smallest_sigma_is_that_of_the_rank():
     assert smallest_sigma(tree, hand, theta)[0] > 0.3
     still = body(Joint("a"), end=("a", (0, 0, 1)))
     assert_array_equal(smallest_sigma(*still, np.zeros((4, 1))), np.zeros(4))
+
+
+@pytest.mark.parametrize("far", [1.0, 1e6, 1e10])
+def test_a_plane_that_is_tilted_and_far_away_is_a_plane(far):
+    rng = np.random.default_rng(0)
+    case = Case(*figures.planar_arm(3), np.zeros(3), np.zeros((1, 3)))
+    _, turned, _ = BODY["ground turned"](case, rng)
+    _, there, _ = ground_moved(turned, rng, far=far)
+    assert full_rank(*there[:2]) == 2
