@@ -3,6 +3,8 @@
 import sys
 from pathlib import Path
 
+import numpy as np
+import pytest
 from hypothesis import settings
 
 settings.register_profile("ikteach", deadline=None, derandomize=True, print_blob=True)
@@ -10,3 +12,13 @@ settings.load_profile("ikteach")
 
 HERE = Path(__file__).parent
 sys.path += [str(HERE), str(HERE / "bench")]
+
+
+@pytest.fixture(params=["as rounded here", "rounded otherwise"])
+def rounding(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """For what is said of runs: once with this processor's last bits, once with others."""
+    from rounding import move_all
+
+    if request.param == "rounded otherwise":
+        for name, other in move_all().items():
+            monkeypatch.setattr(np.linalg, name, other)

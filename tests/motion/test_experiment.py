@@ -14,6 +14,7 @@ from ikteach.motion.experiment import (
     circle,
     downhill,
     iterations,
+    nearby,
     reversals,
     starts,
     step_times,
@@ -31,6 +32,18 @@ def test_starts_are_within_limits_and_begin_at_rest():
     assert_array_equal(poses, starts(tree, 50, spread=1.0))
     assert abs(poses - starts(tree, 50, spread=1.0, seed=1))[1:].max() > 0.1
     assert abs(starts(tree, 50, spread=0.1) - tree.rest).max() < 0.1 * np.pi
+
+
+def test_nearby_poses_hardly_differ():
+    rest = HUMAN.tree.rest
+    poses = nearby(rest, 30)
+    assert poses.shape == (30, len(rest))
+    assert_array_equal(poses[0], rest)
+    assert_array_equal(poses, nearby(rest, 30))
+    assert abs(nearby(rest, 30, seed=1) - poses).max() > 0
+    assert len(np.unique(poses, axis=0)) == 30
+    assert 0.5e-12 < abs(poses - rest).max() <= 1.001e-12
+    assert abs(nearby(rest, 30, apart=0.1) - rest).max() > 0.05
 
 
 def test_reversals_count_turns_against_the_turn_before():
