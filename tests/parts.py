@@ -22,10 +22,11 @@ ROOT = Path(__file__).parents[1]
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 COMPUTING = [
     *(f"tests/{room}" for room in ("bench", "body", "motion", "solvers")),
-    *(f"tests/test_{name}.py" for name in ("study", "trials", "types")),
+    *(f"tests/test_{name}.py" for name in ("study", "trials")),
 ]
 KERNELS, RARER_KERNELS = ["Haswell", "Sandybridge"], ["SkylakeX", "Zen"]
 ROUNDED = ["tests/body", "tests/motion", "tests/solvers", "tests/course/test_prose.py"]
+STYLE = "tests/test_types.py"  # with the newest numpy, pandas, mypy and ruff alone
 TALKING = ["tests/course/test_teaching.py", "tests/test_notebooks.py"]
 Command = Sequence[str]
 
@@ -144,15 +145,15 @@ def path_to_pythons() -> str:
 
 def lanes(folder: Path, full: bool) -> list[list[list[Part]]]:
     """The lanes, those of one list side by side, one list after the other."""
-    apart = [f"--ignore={one}" for one in ["tests/browser", *COMPUTING]]
-    no_browser = ["tests", "--ignore=tests/browser", "--ignore=tests/hub"]
+    apart = [f"--ignore={one}" for one in ["tests/browser", *COMPUTING, STYLE]]
+    no_browser = ["tests", "--ignore=tests/browser", f"--ignore={STYLE}"]
     servers = Part(
         "servers, notebooks, widgets",
         [pytest("--numprocesses", "2", "--dist", "loadfile", *apart, nice=False)],
     )
     browser = Part("browser", [pytest("tests/browser", nice=False)])
     beside = [
-        Part("computing", [pytest(*COMPUTING)]),
+        Part("computing", [pytest(*COMPUTING, STYLE)]),
         *(kernel(name, *(TALKING if full else [])) for name in KERNELS),
         packages(folder, "lowest-direct", no_browser if full else [*COMPUTING, "tests/view"]),
     ]

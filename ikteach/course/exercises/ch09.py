@@ -39,6 +39,7 @@ def walk(solver: Any) -> tuple[float, float]:
         "The feet can be reached, the hands cannot. Who is good at each of these?",
         "One of the undamped or selectively damped methods for the feet; the calmest for the arms.",
     ],
+    seconds=30,
 )
 def mix(value: Any) -> None:
     """my_mix: {effector: method} that keeps the feet near and the figure calm."""
