@@ -55,7 +55,7 @@ class Done:
 
     def __str__(self) -> str:
         line = f"{self.result:8} {self.seconds:5.0f} s  {self.name}"
-        return line if self.result != "left out" else f"{line}: {self.said.splitlines()[-1]}"
+        return line if self.result != "left out" else f"{line}: {self.said.splitlines()[-1].strip()}"
 
 
 class Runner:
