@@ -181,6 +181,57 @@ def summary(table: pd.DataFrame, by: Iterable[str] = ("method", "effector")) -> 
     )
 
 
+def many(tracks: Mapping[str, Track]) -> pd.DataFrame:
+    """Measure batches (b,) of runs: what they come to at least, in the middle and at most.
+
+    Rows and measures are those of `summary`; each measure is three columns, least, median and most
+    over the batch. For runs that may be chaotic, from starts such as those of
+    `ikteach.motion.experiment.nearby`: there one run says nothing.
+    """
+    if not tracks:
+        raise ValueError("there are no runs to measure")
+    return pd.concat({m: _spread(run) for m, run in tracks.items()}, names=["method", "effector"])
+
+
+def _spread(run: Track) -> pd.DataFrame:
+    """Least, median and most of each measure over the members of a batch, a row per effector."""
+    if run.theta.ndim != 3:
+        raise ValueError(f"many runs are a batch (b,), not one of shape {run.theta.shape[1:-1]}")
+    error, k = run.error, len(run.effectors)
+    values = {
+        "mean": error.mean(axis=0),
+        "median": np.median(error, axis=0),
+        "p95": np.quantile(error, 0.95, axis=0),
+        "max": error.max(axis=0),
+        "jitter": run.jitter.mean(axis=0)[:, None],
+        "capped": run.capped.mean(axis=0)[:, None],
+        "held": (run.held[:, :, None] & run.effectors.carried).sum(axis=-1).mean(axis=0),
+        "smallest_sigma": run.smallest_sigma.min(axis=0)[:, None],
+    }  # (b, k), or (b, 1) of the whole body
+    shares = {"least": 0.0, "median": 0.5, "most": 1.0}
+    columns = {
+        (measure, word): np.broadcast_to(np.quantile(values[measure], share, axis=0), k)
+        for measure in MEASURES
+        for word, share in shares.items()
+    }
+    return pd.DataFrame(columns, index=list(run.effectors.names))
+
+
+def ranges(table: pd.DataFrame) -> pd.DataFrame:
+    """Write a table of `many` to be read: two digits of the median, and the range in brackets.
+
+    Where all runs agree to two digits there is no range.
+    """
+
+    def told(least: float, median: float, most: float) -> str:
+        low, middle, high = (f"{round(value, 4):.2g}" for value in (least, median, most))
+        return middle if low == high else f"{middle} ({low} to {high})"
+
+    measures = dict.fromkeys(table.columns.get_level_values(0))
+    cells = {name: [told(*row) for row in table[name].to_numpy()] for name in measures}
+    return pd.DataFrame(cells, table.index)
+
+
 def by_phase(table: pd.DataFrame, period: float, parts: int = 24) -> pd.DataFrame:
     """Mean distance to target [m] in each part of the cycle: rows phase 0..1, a column for each
     method and effector. `period` is the gait's [s].

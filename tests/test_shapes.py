@@ -6,6 +6,7 @@ human (n joints, k effectors, m = 3k rows) and the batch for `...`, and runs the
 
 import re
 from dataclasses import fields
+from inspect import getdoc
 
 import numpy as np
 import pytest
@@ -134,8 +135,8 @@ def test_what_a_record_promises(record, make, batch):
     made = make(Given(batch))
     names = [f.name for f in fields(record)] if hasattr(made, "__dict__") else made._fields
     kept = 0
-    for line in record.__doc__.splitlines():
-        said = re.match(r"\s{4}(\w[\w, ]*?)\s+(\([\w., ]*\))", line)
+    for line in getdoc(record).splitlines():
+        said = re.match(r"(\w[\w, ]*?)\s+(\([\w., ]*\))", line)
         if said:
             for name in said[1].split(", "):
                 assert name in names, line

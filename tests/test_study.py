@@ -117,6 +117,39 @@ def test_the_summary_is_what_numpy_says(table):
     assert_allclose(by_method["mean"], [run.error.mean() for run in runs.values()])
 
 
+def test_of_many_runs_the_middle_and_the_ends(table):
+    one = study.runs(TREE, EFFECTORS, WALK[:, None], ["dls"], theta=TREE.rest[None])
+    summary = study.summary(table).loc[["dls"]]
+    for word in ("least", "median", "most"):
+        of_one = study.many(one).xs(word, axis=1, level=1)
+        assert list(of_one.columns) == study.MEASURES
+        assert_allclose(of_one, summary, rtol=1e-6, atol=1e-12)
+
+    poses = TREE.rest + np.linspace(0, 0.2, 5)[:, None]
+    runs = study.runs(TREE, EFFECTORS, WALK[:, None], ["sdls", "dls"], theta=poses)
+    many = study.many(runs)
+    assert many.index.tolist() == [(m, e) for m in ("sdls", "dls") for e in EFFECTORS.names]
+    assert list(many["mean", "median"].unstack("effector").columns) == list(EFFECTORS.names)
+    error, jitter = runs["dls"].error[:, :, 0].mean(axis=0), runs["dls"].jitter.mean(axis=0)
+    row = many.loc["dls", EFFECTORS.names[0]]
+    assert_allclose(row["mean"], [error.min(), np.median(error), error.max()])
+    assert_allclose(row["jitter"], [jitter.min(), np.median(jitter), jitter.max()])
+    with pytest.raises(ValueError, match="many runs are a batch"):
+        study.many(study.runs(TREE, EFFECTORS, WALK, ["dls"]))
+    with pytest.raises(ValueError, match="no runs"):
+        study.many({})
+
+
+def test_ranges_stand_where_runs_differ():
+    words = pd.MultiIndex.from_product([["mean", "jitter"], ["least", "median", "most"]])
+    rows = [[0.1201, 0.1202, 0.1203, 1.3, 4.94, 5.2], [0, 1e-17, 3e-9, 0.5, 0.5, 1]]
+    told = study.ranges(pd.DataFrame(rows, columns=words))
+    assert told.to_dict("list") == {
+        "mean": ["0.12", "0"],
+        "jitter": ["4.9 (1.3 to 5.2)", "0.5 (0.5 to 1)"],
+    }
+
+
 def test_by_phase_is_a_mean_in_each_part_of_the_cycle(table):
     period = gait.walking.period
     parts = study.by_phase(table, period, parts=4)

@@ -16,8 +16,8 @@ def by_hand(theta: ArrayLike, lengths: ArrayLike) -> Array:
 
     theta (..., n) [rad], lengths (n,) [m].
     """
-    phi = np.cumsum(theta, axis=-1)
-    x, y = lengths * np.cos(phi), lengths * np.sin(phi)
+    phi, links = np.cumsum(theta, axis=-1), np.asarray(lengths, dtype=float)
+    x, y = links * np.cos(phi), links * np.sin(phi)
     return np.stack([-_from_here_on(y), _from_here_on(x)], axis=-2)
 
 

@@ -90,6 +90,18 @@ def starts(tree: Tree, count: int, *, spread: float = 0.5, seed: int = 0) -> Arr
     return np.minimum(np.maximum(theta, tree.lower), tree.upper)
 
 
+def nearby(theta: ArrayLike, count: int = 40, *, apart: float = 1e-12, seed: int = 0) -> Array:
+    """Make poses that hardly differ, θ (n,) the first of them: (count, n) [rad].
+
+    No angle differs from that of θ by more than `apart` [rad]. If runs from them come to different
+    things, they are chaotic: rounding decides, and a single one says nothing. Tell such runs by
+    their median and spread (`ikteach.study.many`). Equal seeds give equal poses.
+    """
+    nudge = np.random.default_rng(seed).uniform(-apart, apart, size=(count, np.size(theta)))
+    nudge[:1] = 0
+    return np.asarray(theta, dtype=float) + nudge
+
+
 def reversals(run: Track) -> Array:
     """How often a joint turns back, on average over joints and time, (...) [1/s].
 

@@ -28,7 +28,8 @@ class Directions(NamedTuple):
     """The singular directions of J, strongest first, and what SDLS knows of each.
 
     sigma  (..., r)     σ_i [m/rad]
-    alpha  (..., r)     α_i = u_iᵀe, the error along u_i [m]
+    alpha  (..., r)     α_i = u_iᵀe, the error along u_i [m]; the signs of u_i and v_i, which are
+                        free together, are those that make it 0 or more
     U      (..., m, r)  u_i in columns, ways of the effectors
     Vt     (..., r, n)  v_i in rows, ways of the joints
     N      (..., r)     how far the effectors get along u_i, summed over effectors
@@ -54,6 +55,8 @@ def directions(J: ArrayLike, e: ArrayLike, *, max_angle: float = pi / 4) -> Dire
     (J, e), max_angle = system(J, e), number("max_angle", max_angle)
     three_rows(J)
     U, sigma, Vt = np.linalg.svd(J, full_matrices=False)
+    sign = np.where(np.vecmat(e, U) < 0, -1.0, 1.0)
+    U, Vt = U * sign[..., None, :], Vt * sign[..., None]
     used = kept(sigma)
     N, M, gamma = bounds(J, U, np.where(used, sigma, 1), Vt, max_angle)
     alpha = np.vecmat(e, U)

@@ -51,10 +51,11 @@ def solids(part: Part, frame: int) -> list[Solid]:
 
 def ellipsoid(centre: ArrayLike, radii: ArrayLike, colour: str, frame: int) -> Solid:
     """((x − c)/r)² = 1 in each coordinate, summed."""
-    to_unit = np.diag([*np.divide(1, radii), 1.0])
-    to_unit[:3, 3] = -np.divide(centre, radii)
+    c, r = np.asarray(centre, dtype=float), np.asarray(radii, dtype=float)
+    to_unit = np.diag([*(1 / r), 1.0])
+    to_unit[:3, 3] = -c / r
     Q = to_unit.T @ np.diag([1.0, 1, 1, -1]) @ to_unit
-    ball = [*np.asarray(centre, dtype=float), np.max(radii)]
+    ball = [*c, r.max()]
     return Solid(frame, Q, np.zeros((2, 4)), np.full(2, ANYWHERE), np.array([ball, ball]),
                  rgb(colour))  # fmt: skip
 

@@ -8,12 +8,14 @@ import pytest
 
 from ikteach import dls, figures, forward, gait, jacobian, pseudoinverse, track, transpose
 from ikteach.motion import BUSS_CAPS, clip, hold, per_chain, whole
-from ikteach.motion.experiment import arrivals
+from ikteach.motion.experiment import arrivals, nearby
 from ikteach.solvers import SOLVERS
 
 ARM, HUMAN = figures.planar_arm(3), figures.human()
 CYCLE = gait.walking.at(np.linspace(0, 2 * np.pi, 34, endpoint=False))
 WALK = np.tile(CYCLE, (3, 1, 1))
+
+pytestmark = pytest.mark.usefixtures("rounding")
 
 
 @pytest.mark.parametrize("body", [ARM, HUMAN], ids=["arm", "human"])
@@ -30,14 +32,27 @@ def test_03_steps_with_the_best_alpha_come_to_stand_at_right_angles():
 
 
 def test_04_caps():
-    bound = radians(5)
-    free = track(*HUMAN, WALK, pseudoinverse)
-    as_one = track(*HUMAN, WALK, pseudoinverse, max_step=bound, cap=whole)
-    apart = track(*HUMAN, WALK, pseudoinverse, max_step=bound, cap=per_chain)
-    feet = [run.error[34:, :2].mean() for run in (free, apart, as_one)]
-    assert feet[2] > 20 * max(feet[:2])
-    assert free.error[:, 2:].mean() > 1.1 * as_one.error[:, 2:].mean()
-    assert free.jitter.mean() > 3 * as_one.jitter.mean()
+    caps = [{}, *({"max_step": radians(5), "cap": cap} for cap in (per_chain, whole))]
+    same = {"targets": WALK[:, None], "solver": pseudoinverse, "theta": nearby(HUMAN.tree.rest, 20)}
+    free, apart, as_one = (track(*HUMAN, **same, **cap) for cap in caps)
+    feet = [run.error[34:, :, :2].mean(axis=(0, 2)) for run in (free, apart, as_one)]
+    assert feet[2].min() > 20 * max(feet[0].max(), feet[1].max())
+    hands, jitter = (
+        [np.median(values.mean(axis=0)) for values in (one(free), one(as_one))]
+        for one in (lambda run: run.error[..., 2:].mean(axis=-1), lambda run: run.jitter)
+    )
+    assert hands[0] > 1.1 * hands[1]
+    assert jitter[0] > 3 * jitter[1]
+
+
+def test_04_it_shakes_or_it_freezes():
+    walk = gait.walking(gait.walking.clock(300))[:, None]
+    free = track(*HUMAN, walk, pseudoinverse, theta=nearby(HUMAN.tree.rest, 40))
+    jitter = np.degrees(free.jitter).reshape(10, 30, 40).mean(axis=1)
+    assert (jitter[:2] > 100).mean() > 0.95  # at first they shake
+    frozen, shaking = (jitter[-1] < 10).mean(), (jitter[-1] > 50).mean()
+    assert 0.05 < frozen < 0.75
+    assert frozen + shaking > 0.8  # there is little between
 
 
 def test_04_the_step_grows_like_one_over_the_bend_and_then_is_none():

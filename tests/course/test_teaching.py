@@ -9,9 +9,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ikteach import figures, gait, study
+from ikteach import figures, gait, study, track
 from ikteach.course.collect import collect
 from ikteach.course.record import store
+from ikteach.motion import BUSS_CAPS
+from ikteach.motion.experiment import nearby
 from ikteach.study import distances
 from ikteach.view import BendBench, ColumnPoser, GaitPlayer, Poser, Simulator, Workbench
 from ikteach.view.caps import CapPlayer
@@ -20,6 +22,7 @@ from ikteach.view.slope import slope_bench
 from ikteach.view.spectrum import spectrum_bench
 from ikteach.view.tradeoff import tradeoff_bench
 
+pytestmark = pytest.mark.usefixtures("rounding")
 TEXT = (Path(__file__).parents[2] / "TEACHING.md").read_text(encoding="utf-8")
 
 
@@ -41,6 +44,23 @@ def standing(session: Any, ticks: int = 150) -> pd.DataFrame:
     for _ in range(ticks):
         session.tick()
     return distances(session.tracks(last=2 * ticks // 3))
+
+
+def shaken(*caps: float | None) -> list[np.ndarray]:
+    """Jitter [°] of the pseudoinverse from forty poses that hardly differ, (40,) for each cap [°].
+
+    150 ticks with each cap, one after the other; of the last two thirds. For what is seen in a
+    figure whose run is chaotic: it must be seen from most of them.
+    """
+    (tree, effectors), jitter = figures.human(), []
+    walk = gait.walking(gait.walking.clock(150 * len(caps))).reshape(-1, 150, 1, 4, 3)
+    theta = nearby(tree.rest)
+    for targets, cap in zip(walk, caps, strict=True):
+        bound = None if cap is None else math.radians(cap)
+        run = track(tree, effectors, targets, "pseudoinverse", theta=theta, max_step=bound)
+        jitter.append(np.degrees(run.jitter[50:].mean(axis=0)))
+        theta = run.theta[-1]
+    return jitter
 
 
 def test_there_is_a_row_for_each_chapter() -> None:
@@ -122,7 +142,8 @@ def test_4_one_cap_for_all_costs_the_feet() -> None:
     feet = table[["foot.l", "foot.r"]].max(axis=1)
     assert feet["whole step"] == pytest.approx(13, abs=1.5)
     assert feet[["each chain", "no cap"]].max() < 1
-    assert table["jitter"]["no cap"] > 10 * table["jitter"]["each chain"]
+    (free,) = shaken(None)
+    assert np.median(free) > 10 * table["jitter"]["each chain"]
 
 
 def test_5_lambda_trades_and_has_a_unit() -> None:
@@ -149,21 +170,26 @@ def test_6_the_weakest_direction_is_cut() -> None:
 def test_7_hands_never_arrive_and_one_method_shakes() -> None:
     table = standing(GaitPlayer().session)
     assert table.loc["dls", ["hand.l", "hand.r"]].to_list() == pytest.approx([22, 22], abs=1)
-    assert table["jitter"]["pseudoinverse"] > 10 * table["jitter"]["dls"]
+    (free,) = shaken(None)
+    assert np.median(free) > 10 * table["jitter"]["dls"]
 
 
 def test_8_the_cap_makes_the_verdict() -> None:
-    race, jitter = Race(), {}
-    for caps, degrees in ((EQUAL, 30), (EQUAL, 2), (OWN, 2)):
-        put(race, caps=caps, degrees=degrees)
-        race.refresh()
-        table = standing(race.session)
-        jitter[caps, degrees] = table["jitter"]["pseudoinverse"]
-        if degrees == 2 and caps == EQUAL:
-            assert table.loc["dls", "foot.l"] == pytest.approx(4.4, abs=0.5)
-    assert jitter[EQUAL, 30] > 50
-    assert jitter[EQUAL, 2] < 5
-    assert 8 < jitter[OWN, 2] < 20
+    race = Race()
+    assert race.values["caps"] == EQUAL
+    own = BUSS_CAPS["pseudoinverse"]
+    assert own is not None
+    at_30, at_2, at_own = shaken(race.values["degrees"], 2, math.degrees(own))
+    assert at_30.min() > 60
+    assert np.median(at_30) == pytest.approx(75, abs=8)
+    assert at_2 == pytest.approx(4, abs=0.5)
+    assert at_own == pytest.approx(15, abs=2)
+    put(race, degrees=2)
+    race.refresh()
+    assert standing(race.session).loc["dls", "foot.l"] == pytest.approx(4.4, abs=0.5)
+    put(race, caps=OWN)
+    race.refresh()
+    assert standing(race.session)["jitter"]["pseudoinverse"] == pytest.approx(15, abs=2)
 
 
 def test_9_the_feet_follow_later_and_the_hands_as_before() -> None:

@@ -31,6 +31,7 @@ from ikteach.motion.experiment import (
     circle,
     downhill,
     iterations,
+    nearby,
     reversals,
     starts,
     step_times,
@@ -71,6 +72,18 @@ def test_slides_start_anywhere_in_their_travel(unit):
     assert poses[:, 0].max() > 19
     assert 2.9 < poses[:, 1].max() <= 3  # as far from rest as the links are long
     assert poses[:, 1].min() == 1
+
+
+def test_nearby_poses_hardly_differ():
+    rest = HUMAN.tree.rest
+    poses = nearby(rest, 30)
+    assert poses.shape == (30, len(rest))
+    assert_array_equal(poses[0], rest)
+    assert_array_equal(poses, nearby(rest, 30))
+    assert abs(nearby(rest, 30, seed=1) - poses).max() > 0
+    assert len(np.unique(poses, axis=0)) == 30
+    assert 0.5e-12 < abs(poses - rest).max() <= 1.001e-12
+    assert abs(nearby(rest, 30, apart=0.1) - rest).max() > 0.05
 
 
 def test_reversals_count_turns_against_the_turn_before():

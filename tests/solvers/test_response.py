@@ -22,6 +22,15 @@ def test_the_directions_take_j_and_e_apart():
     assert_allclose((found.U * found.sigma[:, None, :]) @ found.Vt, J, atol=1e-12)
     assert_allclose(np.matvec(found.U, found.alpha), E, atol=1e-12)
     assert (np.diff(found.sigma) <= 0).all()
+    assert (found.alpha >= 0).all()  # the signs that SVD leaves open are chosen
+
+
+def test_the_directions_are_those_of_any_processor():
+    found = directions(J, E)
+    J4, E4 = np.concatenate([J, J])[:, None], np.stack([E, -E]).reshape(8, 1, 12)
+    again = directions(J4, E4)  # another SVD, and the opposite error
+    assert_allclose(again.alpha[:4, 0], found.alpha, atol=1e-12)
+    assert_allclose(again.U[4:, 0], -found.U, atol=1e-12)
 
 
 @pytest.mark.parametrize("max_angle", [np.pi / 4, 0.05])

@@ -134,10 +134,10 @@ def test_it_plays_to_the_end_and_from_the_beginning_again():
         assert replay.at == here
         replay.playing.value = True
         await asyncio.sleep(0.02)
-        replay.slider.value = 100  # moved on the way: it goes on from there
-        await until(lambda: 100 <= replay.at < last)
+        replay.slider.value = 300  # moved on the way: it goes on from there
+        await until(lambda: 300 <= replay.at < last)
         replay.slider.value = 1
-        await until(lambda: 1 <= replay.at < 100)
+        await until(lambda: 1 <= replay.at < 300)
         replay.close()
 
     asyncio.run(story())

@@ -8,19 +8,27 @@ import numpy as np
 from ikteach.body import figures
 from ikteach.course.checking import NotYetError, WrongError, exercise, expect
 from ikteach.motion import gait, track
+from ikteach.motion.experiment import nearby
 from ikteach.motion.mix import Mix
 from ikteach.solvers import SOLVERS
 
-FEET, SHAKE = 0.002, 2.0  # [m] and [degrees a tick²]: what no single method keeps to at once
+FEET, SHAKE = 0.002, 3.0  # [m] and [degrees per tick²]: what no single method keeps to at once
 FRAMES, SETTLING = 120, 30
+POSES = 64  # to start from: some mixes are chaotic, and freeze from a few of them only
 
 
 def walk(solver: Any) -> tuple[float, float]:
-    """Mean distance of the feet [m] and jitter [degrees] of 4 s of walking, the first left out."""
+    """Mean distance of the feet [m] and jitter [degrees] of 4 s of walking, the first left out.
+
+    The worst of many starts that differ by rounding alone.
+    """
     tree, effectors = figures.human()
-    run = track(tree, effectors, gait.walking(gait.walking.clock(FRAMES)), solver)
+    targets = gait.walking(gait.walking.clock(FRAMES))
+    run = track(tree, effectors, targets[:, None], solver, theta=nearby(tree.rest, POSES))
     feet = [name.startswith("foot") for name in effectors.names]
-    return run.error[SETTLING:, feet].mean(), float(np.degrees(run.jitter[SETTLING:].mean()))
+    distance = run.error[SETTLING:, :, feet].mean(axis=(0, 2))
+    jitter = np.degrees(run.jitter[SETTLING:].mean(axis=0))
+    return float(distance.max()), float(jitter.max())
 
 
 @exercise(
@@ -31,6 +39,7 @@ def walk(solver: Any) -> tuple[float, float]:
         "The feet can be reached, the hands cannot. Who is good at each of these?",
         "One of the undamped or selectively damped methods for the feet; the calmest for the arms.",
     ],
+    seconds=30,
 )
 def mix(value: Any) -> None:
     """my_mix: {effector: method} that keeps the feet near and the figure calm."""
@@ -46,4 +55,4 @@ def mix(value: Any) -> None:
         expect(method in SOLVERS, f"{method!r} is none of {', '.join(SOLVERS)}.")
     feet, shake = walk(Mix.of(effectors, dict(value)))
     expect(feet < FEET, f"The feet are {1000 * feet:.1f} mm from their targets, not below 2 mm.")
-    expect(shake < SHAKE, f"The figure shakes by {shake:.1f}° a tick, not below {SHAKE:g}°.")
+    expect(shake < SHAKE, f"The figure shakes by {shake:.1f}° per tick, not below {SHAKE:g}°.")
