@@ -9,10 +9,12 @@ import sys
 from pathlib import Path
 from urllib.parse import quote
 
+from ikteach import __version__
 from ikteach.course import ports
 from ikteach.course.opening import Course, chapters, deliver, find_course, told
 
 PACKAGE = Path(__file__).resolve().parent
+COMMANDS = ("build", "collect", "lecture", "site")
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -35,6 +37,8 @@ def main(argv: list[str] | None = None) -> int:
             from ikteach.course import site
 
             return site.main(PACKAGE, argv[1:])
+        if reason := misspelt(argv):
+            return refuse(reason)
         options, extra = parse(argv)
         return open_course(find_course(PACKAGE), options, extra)
     except OSError as error:
@@ -42,11 +46,25 @@ def main(argv: list[str] | None = None) -> int:
         return refuse(f"The course cannot be opened: {where}{error.strerror or error}.")
 
 
+def misspelt(argv: list[str]) -> str:
+    """Why a command is not where it is looked for, or not one; empty where none is meant."""
+    word = argv[0] if argv else ""
+    late = [command for command in COMMANDS if command in argv and "--" not in argv]
+    if late and word.startswith("-"):
+        return f"The command comes first: python -m ikteach {late[0]} …"
+    meant = ports.meant(word, [*COMMANDS, "--list", "--help", "--version"])
+    if not meant or word.startswith("-") or os.sep in word or Path(word).exists():
+        return ""
+    folder = os.path.join(".", word)
+    return f"There is no command {ports.shown(word)}{meant} For a folder of that name: {folder}"
+
+
 def parse(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
     """Our options, and those for JupyterLab: what follows `--`."""
-    parser = argparse.ArgumentParser(
+    parser = ports.Parser(
         prog="python -m ikteach",
-        usage="%(prog)s [FOLDER] [--no-browser] [--port N] [--list] [-- JUPYTERLAB OPTIONS]\n"
+        usage="%(prog)s [FOLDER] [--no-browser] [--port N] [--list] [--version]"
+        " [-- JUPYTERLAB OPTIONS]\n"
         "       %(prog)s build student|instructor|html FOLDER\n"
         "       %(prog)s site FOLDER [--pyodide FOLDER|ADDRESS]\n"
         "       %(prog)s lecture [FOLDER]\n"
@@ -62,6 +80,7 @@ def parse(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
         help="copy the notebooks there and open the copy; a file that you have changed is never "
         "overwritten (default: ./ikteach-course, or in a clone its own notebooks, uncopied)",
     )
+    parser.add_argument("--version", action="version", version=f"ikteach {__version__}")
     parser.add_argument("--list", action="store_true", help="print the chapters and end")
     options, extra = ports.parse(parser, argv)
     return options, ["--no-browser"] * options.no_browser + extra

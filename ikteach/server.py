@@ -20,27 +20,42 @@ def _jupyter_server_extension_points() -> list[dict[str, str]]:
 
 
 def _load_jupyter_server_extension(server: Any) -> None:
-    from jupyter_server.services.kernels import websocket
+    for step in (send_at_once, watch_cells):
+        try:
+            step(server)
+        except (ImportError, AttributeError) as missing:
+            server.log.warning(
+                f"ikteach.server steps aside in {step.__name__}: it does not know this Jupyter "
+                f"Server ({missing}). Everything works, less smoothly."
+            )
 
-    handler: Any = websocket.KernelWebsocketHandler
-    opened = handler.open
 
-    async def open_with_nodelay(self: Any, kernel_id: str) -> None:
-        self.set_nodelay(True)
-        await opened(self, kernel_id)
+def send_at_once(server: Any) -> None:
+    """Have the sockets of pages wait for nothing before they send."""
+    from jupyter_server.services.kernels.websocket import KernelWebsocketHandler
+
+    handler: Any = KernelWebsocketHandler
+    opened, set_nodelay = handler.open, handler.set_nodelay
+
+    async def open_with_nodelay(self: Any, *args: Any, **kwargs: Any) -> None:
+        set_nodelay(self, True)
+        await opened(self, *args, **kwargs)
 
     handler.open = open_with_nodelay
 
+
+def watch_cells(server: Any) -> None:
+    """Have the server listen to what kernels say of cells, and to nothing else."""
     manager: Any = server.kernel_manager
     watch = manager.start_watching_activity
 
-    def watch_cells(kernel_id: str) -> None:
+    def watch_cells_of(kernel_id: str) -> None:
         watch(kernel_id)
         kernel = manager.get_kernel(kernel_id)
-        if kernel.kernel_name == "python3":  # other kernels may have other topics
-            socket = kernel._activity_stream.socket
+        socket = getattr(getattr(kernel, "_activity_stream", None), "socket", None)
+        if socket and kernel.kernel_name == "python3":  # other kernels may have other topics
             socket.unsubscribe(b"")
             for topic in CELLS:
                 socket.subscribe(topic)
 
-    manager.start_watching_activity = watch_cells
+    manager.start_watching_activity = watch_cells_of

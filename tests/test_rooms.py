@@ -31,7 +31,7 @@ EVERYTHING = BELOW.keys() | {"", "view", "course"}
 TOP = {"view", "course", "__main__"}
 SCREEN = {"matplotlib", "ipywidgets", "pythreejs", "anywidget", "traitlets", "IPython"}
 PAGES = {"nbformat", "nbclient", "nbconvert", "latex2mathml", "pygments"}
-SERVER = {"voila", "tornado", "jupyter_client"}
+SERVER = {"voila", "tornado", "jupyter_client", "jupyter_server", "jupyterlab_server", "ipykernel"}
 SITE = {"hatchling", "jupyter_core", "packaging"}
 HEAVY = ["pandas", "matplotlib", "ipywidgets", "pythreejs", "anywidget", "traitlets"]
 

@@ -1,9 +1,12 @@
 """The extension of Jupyter Server, with a kernel manager of Jupyter Server and a real kernel."""
 
 import asyncio
+import sys
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
+from jupyter_server.services.kernels import websocket
 from jupyter_server.services.kernels.kernelmanager import AsyncMappingKernelManager
 from jupyter_server.services.kernels.websocket import KernelWebsocketHandler
 
@@ -55,3 +58,41 @@ def test_the_server_watches_cells_and_not_frames(monkeypatch: pytest.MonkeyPatch
     assert {"busy", "idle"} <= set(stood)
     assert any(one.startswith(b"stream.stdout") for one in heard)
     assert not any(one.startswith(b"comm") for one in heard)
+
+
+class Told(list[str]):
+    """A log that keeps what it is told."""
+
+    warning = list.append
+
+
+def sentence(monkeypatch: pytest.MonkeyPatch, **parts: Any) -> str:
+    """What is said where a server has only these parts."""
+    monkeypatch.setattr(KernelWebsocketHandler, "open", KernelWebsocketHandler.open)  # afterwards
+    log = Told()
+    _load_jupyter_server_extension(SimpleNamespace(log=log, **parts))
+    (said,) = log
+    assert said.startswith("ikteach.server steps aside in ")
+    return said
+
+
+def test_without_what_it_changes_it_says_so_and_steps_aside(monkeypatch: Any) -> None:
+    manager = SimpleNamespace(start_watching_activity=print)
+    assert "kernel_manager" in sentence(monkeypatch)
+    assert "start_watching_activity" in sentence(monkeypatch, kernel_manager=object())
+    monkeypatch.setattr(websocket, "KernelWebsocketHandler", object)
+    assert "open" in sentence(monkeypatch, kernel_manager=manager)
+    monkeypatch.setitem(sys.modules, websocket.__name__, None)
+    assert "send_at_once" in sentence(monkeypatch, kernel_manager=manager)
+    assert manager.start_watching_activity is not print
+
+
+def test_a_kernel_that_is_not_watched_is_left_alone(monkeypatch: Any) -> None:
+    monkeypatch.setattr(KernelWebsocketHandler, "open", KernelWebsocketHandler.open)  # afterwards
+    watched: list[str] = []
+    manager = SimpleNamespace(
+        start_watching_activity=watched.append, get_kernel=lambda kernel_id: object()
+    )
+    _load_jupyter_server_extension(SimpleNamespace(kernel_manager=manager))
+    manager.start_watching_activity("k")
+    assert watched == ["k"]

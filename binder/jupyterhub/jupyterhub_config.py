@@ -19,9 +19,12 @@ people whom nobody knows.
 """
 
 import os
+import pwd
+import stat
 import sys
 from contextlib import suppress
 from importlib.metadata import entry_points
+from itertools import chain
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -63,6 +66,11 @@ c.Spawner.start_timeout = c.Spawner.http_timeout = 180  # [s] a whole class logs
 # kernel; JupyterHub's own LocalProcessSpawner only tells the server the numbers.
 c.JupyterHub.spawner_class = "systemd"  # needs for each student an account of the system
 c.SystemdSpawner.isolate_tmp = True
+c.SystemdSpawner.unit_extra_properties = {
+    "TasksMax": "512",  # processes and threads: a server, and a kernel for each chapter, have 200
+    "LimitFSIZE": "2G",  # one file; how much a student may keep in all is the file system's quota
+    "MemorySwapMax": "0",  # whose memory is full does not have the machine swap for all
+}
 c.Spawner.mem_limit = "1G"
 c.Spawner.cpu_limit = 1.0  # cores
 
@@ -76,6 +84,21 @@ c.JupyterHub.load_roles = [
 ]
 CULLER = [sys.executable, "-m", "jupyterhub_idle_culler", "--timeout=3600", "--max-age=36000"]
 c.JupyterHub.services = [{"name": "idle-culler", "command": CULLER}]
+
+
+# The settings by which an authenticator names the house whose people it knows.
+HOUSES = [
+    *("hosted_domain", "tenant_id", "allowed_idps", "identity_provider"),  # one of many houses
+    *(
+        "authorize_url",
+        "github_url",
+        "gitlab_url",
+        "okta_domain",
+        "auth0_domain",
+    ),  # its own sign-on
+    *("issuer", "consumers"),  # a learning platform
+    "server_address",  # a directory
+]
 
 
 def refuse(sentence):
@@ -103,6 +126,18 @@ def chosen(kind, value):
     return value, settings
 
 
+def changeable(path, folders, admins):
+    """Whether somebody who is no admin may write to a path; in a folder also: replace its files."""
+    found = path.stat()
+    with suppress(KeyError):  # whom the system does not know, nobody is
+        owner = pwd.getpwuid(found.st_uid).pw_name
+        if found.st_uid not in (0, os.geteuid()) and repr(owner) not in repr(admins):
+            return True
+    by_group = found.st_mode & stat.S_IWGRP and found.st_gid not in (0, os.getegid())
+    sticky = found.st_mode & stat.S_ISVTX and path not in folders  # as /tmp is, above a folder
+    return bool((by_group or found.st_mode & stat.S_IWOTH) and not sticky)
+
+
 hub = c.JupyterHub
 if not hub.get("authenticator_class"):
     refuse("set c.JupyterHub.authenticator_class: how is a student to prove who they are?")
@@ -112,8 +147,10 @@ if issubclass(authenticator, (auth.DummyAuthenticator, SharedPasswordAuthenticat
     refuse(f"with {name} anybody can come in as anybody.")
 if not any(value for key, value in who.items() if key.startswith("allow")):
     refuse(f"nobody may come in. Set allowed_users, or another allow… of {name}.")
-public = any(provider in name for provider in ("Bitbucket", "GitHub", "Globus", "Google"))
-if who.get("open_signup") or (public and who.get("allow_all") and not who.get("hosted_domain")):
+# All may come in where all are of one house: whoever has a password of this machine, or is of the
+# house that the settings name. Any other authenticator may make a user of whoever comes.
+house = issubclass(authenticator, auth.PAMAuthenticator) or any(map(who.get, HOUSES))
+if who.get("open_signup") or (who.get("allow_all") and not house):
     refuse(f"anybody in the world could come in. Have {name} allow your students alone.")
 if not who.get("admin_users") and not who.get("admin_groups"):
     refuse("set c.Authenticator.admin_users: who looks after the class?")
@@ -125,9 +162,25 @@ for setting in ("allow_origin", "disable_check_xsrf", "Access-Control-Allow-Orig
     if setting in repr([how, hub, c.get("ServerApp")]):
         refuse(f"{setting} opens the students' servers to other people's pages. Take it out.")
 
+# What the hub runs, as root, must be out of the students' reach.
+CLONE = HERE.parents[1]
+folders = [OWNERS.parent, Path.cwd(), Path(sys.prefix).resolve(), CLONE]
+above = (path for folder in folders for path in (folder, *folder.parents))
+trees = [CLONE / name for name in ("binder", "ikteach", "notebooks")]
+for path in chain([OWNERS, *trees], above, *(tree.rglob("*") for tree in trees)):
+    if path.exists() and changeable(path, folders, who.get("admin_users")):
+        refuse(f"others may change {path}: chown it to root, and chmod go-w.")
+
 inside = urlsplit(hub.get("bind_url", "")).hostname in ("127.0.0.1", "::1", "localhost")
 if not inside and not (hub.get("ssl_key") and hub.get("ssl_cert")):
     refuse(
         "passwords would cross the network in the open. Set ssl_key and ssl_cert, or set bind_url "
         "to http://127.0.0.1:8000 and put a web server with TLS before it."
+    )
+if not hub.get("subdomain_host"):
+    print(
+        "All pages have the hub's own origin: what a student's page does, an admin who opens that "
+        "student's server does. Open it as somebody who is no admin, or set subdomain_host, which "
+        "needs a wildcard in the DNS and in the certificate.",
+        file=sys.stderr,
     )

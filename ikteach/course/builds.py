@@ -6,7 +6,6 @@ build, run, with still pictures in place of live ones and formulas as MathML: th
 any network.
 """
 
-import argparse
 import ast
 import copy
 import re
@@ -18,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from ikteach.course.opening import chapters, course_files, deliver, find_course, told
+from ikteach.course.ports import Parser
 
 MARK = re.compile(r"^# %% (\S+)\n", re.MULTILINE)
 
@@ -26,7 +26,7 @@ Notebook = Any  # of nbformat, which is typed as Any
 
 def main(package: Path, argv: list[str]) -> int:
     """`python -m ikteach build student|instructor|html FOLDER`; the exit code."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="python -m ikteach build",
         description="Make a build of the course in FOLDER. A file there that has been changed "
         "since it was made is never overwritten.",

@@ -1,9 +1,37 @@
 """What every server of ours is told on the command line, and what must hold before it starts."""
 
 import argparse
+import difflib
 import errno
 import importlib.util
 import socket
+from collections.abc import Iterable
+from typing import Any
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that asks, of an option that it does not know, whether another was meant."""
+
+    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Read the command line, or end with a sentence and exit code 2."""
+        options, unknown = self.parse_known_args(args, namespace)
+        if unknown:
+            known = [name for action in self._actions for name in action.option_strings]
+            self.error(f"there is no place for {shown(unknown[0])}{meant(unknown[0], known)}")
+        return options
+
+
+def meant(word: str, known: Iterable[str]) -> str:
+    """Ask for the known word that is most like another, or say nothing."""
+    plain = {name.lstrip("-"): name for name in known}
+    word = word.partition("=")[0].lstrip("-").lower()
+    close = difflib.get_close_matches(word, plain, n=1, cutoff=0.75)
+    return f"; did you mean {plain[close[0]]}?" if close else ""
+
+
+def shown(word: str) -> str:
+    """Quote a word of the command line, shortened."""
+    return repr(word if len(word) <= 60 else f"{word[:59]}…")
 
 
 def parse(parser: argparse.ArgumentParser, argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
@@ -19,8 +47,8 @@ def parse(parser: argparse.ArgumentParser, argv: list[str]) -> tuple[argparse.Na
 
 def port_number(text: str) -> int:
     """A port from the command line."""
-    if not (text.isdecimal() and 1 <= int(text) <= 65535):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a port; ports are 1 to 65535")
+    if not (text.isascii() and text.isdecimal() and len(text) < 6 and 1 <= int(text) <= 65535):
+        raise argparse.ArgumentTypeError(f"{shown(text)} is not a port; ports are 1 to 65535")
     return int(text)
 
 

@@ -7,6 +7,7 @@ needs no other line there than elsewhere.
 """
 
 import argparse
+import html
 import json
 import os
 import shutil
@@ -22,6 +23,7 @@ from typing import NamedTuple
 from ikteach.course import builds
 from ikteach.course.opening import MANIFEST, Manifest, chapters, find_course, read_manifest
 from ikteach.markup import Markup
+from ikteach.course.ports import Parser
 
 PYODIDE = "314.0.6"
 PYODIDE_ADDRESS = f"https://cdn.jsdelivr.net/pyodide/v{PYODIDE}/full"
@@ -52,7 +54,7 @@ class Size(NamedTuple):
 
 def main(package: Path, argv: list[str]) -> int:
     """`python -m ikteach site FOLDER`; the exit code."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="python -m ikteach site",
         description="Build the course as static files in FOLDER: any web server can hand them out, "
         "and Python runs in the reader's browser. A site that was built there before and not "

@@ -21,17 +21,29 @@ KERNEL = r'"kernelId": ?"([\w-]+)"'
 
 
 # Ask the page's kernel to run code, then something harmless, and say what was answered.
-INTRUDE = """([kernel, token]) => new Promise(done => {
+INTRUDE = """([kernel, token]) => new Promise((done, failed) => {
   const url = `ws://${location.host}/api/kernels/${kernel}/channels?${token}&session_id=intruder`;
-  const socket = new WebSocket(url), answers = [];
-  const ask = (msg_type, content) => socket.send(JSON.stringify({
-    header: { msg_id: msg_type, msg_type, session: "intruder", username: "", version: "5.3" },
-    parent_header: {}, metadata: {}, content, channel: "shell" }));
+  const socket = new WebSocket(url, "v1.kernel.websocket.jupyter.org"), answers = [];
+  const bytes = value => new TextEncoder().encode(value), text = p => new TextDecoder().decode(p);
+  socket.binaryType = "arraybuffer";
+  const ask = (msg_type, content) => {
+    const header = { msg_id: msg_type, msg_type, session: "intruder", username: "", version: "5" };
+    const json = [header, {}, {}, content].map(part => JSON.stringify(part));
+    const parts = ["shell", ...json].map(bytes);
+    const at = [8 * (parts.length + 2)];
+    for (const part of parts) at.push(at.at(-1) + part.length);
+    const numbers = BigUint64Array.from([at.length, ...at].map(BigInt));
+    socket.send(new Blob([numbers, ...parts]));
+  };
   socket.onmessage = ({ data }) => {
-    const { channel, parent_header, header } = JSON.parse(data);
-    if (channel === "shell" && parent_header.session === "intruder") answers.push(header.msg_type);
+    const n = Number(new BigUint64Array(data.slice(0, 8))[0]);
+    const at = [...new BigUint64Array(data.slice(8, 8 * (n + 1)))].map(Number);
+    const [channel, header, parent] = [0, 1, 2].map(i => text(data.slice(at[i], at[i + 1])));
+    if (channel === "shell" && JSON.parse(parent).session === "intruder")
+      answers.push(JSON.parse(header).msg_type);
     if (answers.includes("kernel_info_reply")) { socket.close(); done(answers); }
   };
+  socket.onclose = ({ code }) => failed(`closed with ${code}`);
   socket.onopen = () => {
     ask("execute_request", { code: "1", silent: false, store_history: false, user_expressions: {},
                              allow_stdin: false });

@@ -1,7 +1,9 @@
 """The lecture's command: what is refused in a sentence, what is set, who gets in."""
 
+import errno
 import re
 import socket
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +11,7 @@ import nbformat
 import pytest
 
 from ikteach import __main__ as cli
+from ikteach import __version__
 from ikteach.course import lecture, ports
 from ikteach.course.lecture.server import Lecture
 
@@ -94,9 +97,11 @@ def test_the_server_shows_pages_and_nothing_else_and_sends_at_once(tmp_path: Pat
     names = [handler.__name__ for _, handler, *_ in handlers]
     assert names[0] == "RedirectHandler"
     assert "Page" in names
+    assert "Channels" in names
     assert not {"TornadoVoilaTreeHandler", "VoilaContentsHandler", "TornadoVoilaHandler"} & set(
         names
     )
+    assert not {"AllowListFileHandler", "VoilaKernelWebsocketHandler"} & set(names)
 
 
 def test_what_hinders_is_said(
@@ -109,7 +114,84 @@ def test_what_hinders_is_said(
     Path("a-file").touch()
     assert cli.main(["lecture", "a-file"]) == 1
     assert "not a folder" in capsys.readouterr().err
+    below = str(Path("a-file", "lecture"))
+    assert cli.main(["lecture", below]) == 1
+    assert f"{Path('a-file').resolve()}" in capsys.readouterr().err
+    with monkeypatch.context() as readonly:
+        readonly.setattr(Path, "mkdir", refuse_to_write)
+        assert cli.main(["lecture", "mine"]) == 1
+    assert "mine: Permission denied" in capsys.readouterr().err
+    with monkeypatch.context() as old:
+        old.setitem(sys.modules, "ikteach.course.lecture.server", None)
+        assert cli.main(["lecture"]) == 1
+    assert "pip install --upgrade 'ikteach[lecture]'" in capsys.readouterr().err
     monkeypatch.setattr(ports.importlib.util, "find_spec", lambda name: None)
     assert cli.main(["lecture"]) == 1
     assert "pip install 'ikteach[lecture]'" in capsys.readouterr().err
     assert served == []
+    assert not Path("ikteach-lecture").exists()
+
+
+def refuse_to_write(path: Path, **_: Any) -> None:
+    raise PermissionError(errno.EACCES, "Permission denied", str(path))
+
+
+def test_its_address_stands_alone(served: list[Lecture], capsys: Any) -> None:
+    cli.main(["lecture", "--no-browser"])
+    capsys.readouterr()
+    served[0].launch_browser()
+    address, end = capsys.readouterr().out.splitlines()
+    assert address.split() == ["the", "lecture", "is", "at", served[0].address]
+    assert end == "Ctrl-C here ends it"
+
+
+@pytest.mark.parametrize(
+    ("argv", "words"),
+    [
+        (["lectur"], "There is no command 'lectur'; did you mean lecture?"),
+        (["Lecture", "--room"], "did you mean lecture?"),
+        (["colect", "answers"], "did you mean collect?"),
+        (["help"], "did you mean --help?"),
+        (["version"], "did you mean --version?"),
+        (["biuld", "student", "x"], "did you mean build?"),
+        (["--no-browser", "lecture"], "The command comes first: python -m ikteach lecture …"),
+        (["sit" + "e" * 3], "did you mean site?"),
+    ],
+)
+def test_a_command_that_is_not_known_makes_no_folder(
+    argv: list[str], words: str, served: list[Lecture], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(argv) == 1
+    assert words in capsys.readouterr().err
+    assert list(Path().iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("argv", "words"),
+    [
+        (["--no-browse"], "'--no-browse'; did you mean --no-browser?"),
+        (["--versoin"], "did you mean --version?"),
+        (["lecture", "--rom"], "'--rom'; did you mean --room?"),
+        (["lecture", "--prot=8866"], "did you mean --port?"),
+        (["lecture", "a", "b"], "there is no place for 'b'"),
+        (["lecture", "--" + "x" * 500], "x…'"),
+        (["lecture", "--port", "0"], "ports are 1 to 65535"),
+        (["lecture", "--port", "9" * 5000], "ports are 1 to 65535"),
+        (["lecture", "--port", "²"], "ports are 1 to 65535"),
+        (["site", "folder", "--pyodid", "x"], "did you mean --pyodide?"),
+    ],
+)
+def test_an_option_that_is_not_known_is_asked_about(
+    argv: list[str], words: str, served: list[Lecture], capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        cli.main(argv)
+    last = capsys.readouterr().err.splitlines()[-1]
+    assert words in last
+    assert len(last) < 200
+
+
+def test_it_says_its_version(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit, match="0"):
+        cli.main(["--version"])
+    assert capsys.readouterr().out == f"ikteach {__version__}\n"

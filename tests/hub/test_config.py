@@ -1,7 +1,10 @@
 """The hub's configuration: what it gives a class, and what it does not start with."""
 
+import os
 import runpy
+import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from classroom import CONFIG
@@ -16,13 +19,18 @@ TLS = """
 c.JupyterHub.ssl_key = "hub.key"
 c.JupyterHub.ssl_cert = "hub.pem"
 """
-GITHUB = """
-from jupyterhub.auth import Authenticator
-class GitHubOAuthenticator(Authenticator): ...
-c.JupyterHub.authenticator_class = GitHubOAuthenticator
-c.Authenticator.allow_all = True
-c.Authenticator.admin_users = {"ada"}
+
+# Authenticators of other packages; what matters is which of them let in whoever comes.
+OTHER = """
+from jupyterhub.auth import Authenticator, LocalAuthenticator
+class {0}(Authenticator): ...
+c.JupyterHub.authenticator_class = {0}
+c.{0}.allow_all = True
+c.Authenticator.admin_users = {{"ada"}}
 """
+GITHUB = OTHER.format("GitHubOAuthenticator")
+LTI = OTHER.format("LTI13Authenticator") + 'c.LTI13Authenticator.issuer = "https://moodle.edu"'
+GOOGLE = OTHER.format("GoogleOAuthenticator") + 'c.GoogleOAuthenticator.hosted_domain = ["a.edu"]'
 BEHIND = 'c.JupyterHub.bind_url = "http://127.0.0.1:8000"'
 
 REFUSED = {
@@ -39,6 +47,12 @@ REFUSED = {
     PAM.replace("admin_users", "blocked_users") + TLS: "admin_users",
     PAM + TLS + "c.PAMAuthenticator.open_signup = True": "anybody in the world",
     GITHUB + TLS: "anybody in the world",
+    **{
+        OTHER.format(name) + TLS: f"anybody in the world .* Have {name} allow"
+        for name in ("TmpAuthenticator", "FirstUseAuthenticator", "NativeAuthenticator", "OfATest")
+    },
+    GITHUB.replace("(Authenticator)", "(LocalAuthenticator)") + TLS: "anybody in the world",
+    OTHER.format("Tmp").replace("c.Tmp.allow", "c.Authenticator.allow") + TLS: "anybody in the",
     PAM.replace("pam", "os.path") + TLS: "no authenticator",
     PAM + TLS + 'c.JupyterHub.spawner_class = "simple"': "share the account",
     PAM + TLS + 'c.Spawner.args.append("--ServerApp.allow_origin=*")': "allow_origin",
@@ -47,11 +61,11 @@ REFUSED = {
 }
 
 
-def load(settings: str, folder: Path, monkeypatch):
+def load(settings: str, folder: Path, monkeypatch, config: Path = CONFIG):
     own = folder / "class.py"
     own.write_text(settings)
     monkeypatch.setenv("IKTEACH_CLASS", str(own))
-    return PyFileConfigLoader(str(CONFIG)).load_config()
+    return PyFileConfigLoader(str(config)).load_config()
 
 
 @pytest.mark.parametrize(("settings", "words"), REFUSED.items(), ids=range(len(REFUSED)))
@@ -67,14 +81,78 @@ def test_it_asks_for_the_file_of_settings(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "settings", [PAM + TLS, PAM + BEHIND, GITHUB.replace("all = True", "ed_users = {'bo'}") + TLS]
+    "settings",
+    [
+        PAM + TLS,
+        PAM + BEHIND,
+        GITHUB.replace("all = True", "ed_users = {'bo'}") + TLS,
+        PAM + TLS + "c.PAMAuthenticator.allow_all = True",
+        LTI + TLS,
+        GOOGLE + TLS,
+        OTHER.format("Tmp").replace("all = True", "ed_users = {'bo'}") + TLS,
+    ],
 )
 def test_it_starts_with_what_a_class_needs(settings, tmp_path, monkeypatch):
     c = load(settings, tmp_path, monkeypatch)
     assert c.Spawner.mem_limit
     assert c.Spawner.cpu_limit
+    assert {"TasksMax", "LimitFSIZE"} <= set(c.SystemdSpawner.unit_extra_properties)
     assert c.Spawner.environment["OPENBLAS_NUM_THREADS"] == "1"
     assert [service["name"] for service in c.JupyterHub.services] == ["idle-culler"]
+
+
+@pytest.mark.parametrize("mode", [0o757, 0o777, 0o1777])
+def test_it_refuses_where_others_may_change_the_settings(mode, tmp_path, monkeypatch):
+    (folder := tmp_path / "hub").mkdir()
+    folder.chmod(mode)
+    with pytest.raises(SystemExit, match=f"others may change {folder}: chown"):
+        load(PAM + TLS, folder, monkeypatch)
+    folder.chmod(0o755)
+    load(PAM + TLS, folder, monkeypatch)
+    (folder / "class.py").chmod(0o646)
+    with pytest.raises(SystemExit, match=r"others may change .*class.py: chown"):
+        load(PAM + TLS, folder, monkeypatch)
+    (folder / "class.py").chmod(0o644)
+    folder.parent.chmod(0o703)
+    with pytest.raises(SystemExit, match=f"others may change {tmp_path}: chown"):
+        load(PAM + TLS, folder, monkeypatch)
+    folder.parent.chmod(0o1703)  # as /tmp is
+    load(PAM + TLS, folder, monkeypatch)
+
+
+def test_it_refuses_a_clone_that_others_may_change(tmp_path, monkeypatch):
+    shutil.copytree(CONFIG.parent, tmp_path / "binder" / "jupyterhub")
+    config = tmp_path / "binder" / "jupyterhub" / CONFIG.name
+    (notebooks := tmp_path / "notebooks").mkdir()
+    load(PAM + TLS, tmp_path, monkeypatch, config)
+    notebooks.chmod(0o757)
+    with pytest.raises(SystemExit, match=f"others may change {notebooks}: chown"):
+        load(PAM + TLS, tmp_path, monkeypatch, config)
+
+
+def test_a_folder_may_be_an_admin_s_and_no_other_s(tmp_path, monkeypatch):
+    """Every file here is then of somebody who is neither root nor the hub."""
+    monkeypatch.setattr("os.geteuid", lambda: -1)
+    stat = Path.stat
+    facts = ("st_mode", "st_gid")
+
+    def owned(path, **options):
+        found = stat(path, **options)
+        return SimpleNamespace(st_uid=12345, **{fact: getattr(found, fact) for fact in facts})
+
+    monkeypatch.setattr(Path, "stat", owned)
+    monkeypatch.setattr("pwd.getpwuid", lambda uid: SimpleNamespace(pw_name="bo"))
+    with pytest.raises(SystemExit, match=f"others may change {tmp_path}/class.py"):
+        load(PAM + TLS, tmp_path, monkeypatch)
+    load(PAM.replace("ada", "bo") + TLS, tmp_path, monkeypatch)
+
+
+def test_it_says_whose_origin_the_pages_have(tmp_path, monkeypatch, capsys):
+    load(PAM + TLS, tmp_path, monkeypatch)
+    assert "subdomain_host" in capsys.readouterr().err
+    named = 'c.JupyterHub.subdomain_host = "https://hub.example.edu"'
+    load(PAM + TLS + named, tmp_path, monkeypatch)
+    assert capsys.readouterr().err == ""
 
 
 def test_what_the_owner_sets_wins_and_is_added(tmp_path, monkeypatch):
@@ -100,3 +178,17 @@ def test_a_server_starts_where_the_course_cannot_be_written(tmp_path, monkeypatc
     runpy.run_path(str(CONFIG.with_name("start.py")))
     assert started
     assert "could not be brought up to date: " in capsys.readouterr().err
+
+
+def test_what_a_student_has_is_for_no_other_to_read(tmp_path, monkeypatch):
+    (course := tmp_path / "ikteach-course").mkdir(mode=0o755)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setattr("jupyterhub.singleuser.main", lambda: (course / "answers").touch())
+    before = os.umask(0o022)
+    try:
+        runpy.run_path(str(CONFIG.with_name("start.py")))
+    finally:
+        os.umask(before)
+    assert course.stat().st_mode & 0o777 == 0o700
+    for one in course.rglob("*"):
+        assert not one.stat().st_mode & 0o077, one

@@ -7,6 +7,7 @@ code; whoever opens one has a kernel of their own, which ends when the page is c
 import argparse
 import os
 import socket
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,7 +25,7 @@ ROOM = "IKTEACH_ROOM"  # set for the kernels when others than the lecturer may o
 
 def parse(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
     """Our options, and those for Voilà: what follows `--`."""
-    parser = argparse.ArgumentParser(
+    parser = ports.Parser(
         prog="python -m ikteach lecture",
         usage="%(prog)s [FOLDER] [--room] [--no-browser] [--port N] [-- VOILÀ OPTIONS]",
         description="Show the workbench, the simulator, the walk and the race as web pages without "
@@ -50,6 +51,12 @@ def parse(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
 
 def show(options: argparse.Namespace, extra: list[str]) -> int:
     """Copy the pages, and serve them until Ctrl-C."""
+    try:
+        from ikteach.course.lecture.server import Lecture
+    except ImportError as error:
+        told_of = f"Voilà is older than it must be, or a part of it is missing ({error})."
+        print(f"{told_of} Mend it with: pip install --upgrade 'ikteach[lecture]'", file=sys.stderr)
+        return 1
     folder = options.folder.expanduser().resolve()
     print(*told(deliver(PAGES, folder), folder), sep="\n")
     os.environ.pop(ROOM, None)
@@ -57,8 +64,6 @@ def show(options: argparse.Namespace, extra: list[str]) -> int:
         os.environ[ROOM] = "1"
     browse = not options.no_browser
     try:
-        from ikteach.course.lecture.server import Lecture
-
         lecture = Lecture.of(folder, FIRST, options.port, room=options.room, browse=browse)
         lecture.initialize(extra)
         lecture.start()
