@@ -6,8 +6,6 @@ What the wheels are is in Pyodide's lock file, so that `import ikteach` finds th
 needs no other line there than elsewhere.
 """
 
-import argparse
-import html
 import json
 import os
 import shutil
@@ -22,8 +20,8 @@ from typing import NamedTuple
 
 from ikteach.course import builds
 from ikteach.course.opening import MANIFEST, Manifest, chapters, find_course, read_manifest
-from ikteach.markup import Markup
 from ikteach.course.ports import Parser
+from ikteach.markup import Markup
 
 PYODIDE = "314.0.6"
 PYODIDE_ADDRESS = f"https://cdn.jsdelivr.net/pyodide/v{PYODIDE}/full"
