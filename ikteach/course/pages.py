@@ -133,7 +133,7 @@ def _still(output: Any) -> None:
     data = output.get("data", {})
     words = re.sub(r"\s+", " ", str(data.get("text/plain", "")))
     live = data.pop(WIDGET, None) is not None
-    if "image/png" in data and "text/html" not in data:
+    if "image/png" in data and (live or "text/html" not in data):
         png = data["image/png"].strip()
         data["text/html"] = Markup('<img alt="{}" src="data:image/png;base64,{}">').format(
             words, png

@@ -127,4 +127,4 @@ function render({ model, el }) {
   return () => model.off("change:locked change:status change:asked", update);
 }
 
-export default { render };
+export default { render: told(render) };

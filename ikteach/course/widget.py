@@ -11,6 +11,7 @@ from ikteach.markup import Markup, untouched
 from ikteach.view import doors
 from ikteach.view.acting import in_words
 from ikteach.view.closing import Living, occupant
+from ikteach.view.esm import esm
 
 
 class Question(Living, anywidget.AnyWidget):
@@ -20,7 +21,7 @@ class Question(Living, anywidget.AnyWidget):
     second question of the same key closes the first: its cell was run again.
     """
 
-    _esm = Path(__file__).parent / "question.js"
+    _esm = esm() + (Path(__file__).parent / "question.js").read_text()
 
     kind = traitlets.Enum(["choice", "number", "ranking"], "choice").tag(sync=True)
     question = traitlets.Unicode().tag(sync=True)

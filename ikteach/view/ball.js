@@ -86,4 +86,4 @@ function render({ model, el }) {
   return () => model.off("change", draw);
 }
 
-export default { render };
+export default { render: told(render) };

@@ -1,11 +1,10 @@
 """A ball that is turned like a globe, and says how far."""
 
-from pathlib import Path
-
 import anywidget
 import traitlets
 
 from ikteach.view.closing import Living
+from ikteach.view.esm import esm
 
 
 class Ball(Living, anywidget.AnyWidget):
@@ -15,7 +14,7 @@ class Ball(Living, anywidget.AnyWidget):
     elevation  degrees above the floor, −85 to 85
     """
 
-    _esm = Path(__file__).parent / "ball.js"
+    _esm = esm("ball")
     azimuth = traitlets.Float(0.0).tag(sync=True)
     elevation = traitlets.Float(0.0).tag(sync=True)
     label = traitlets.Unicode("Rotation ball").tag(sync=True)

@@ -13,7 +13,8 @@ from ikteach.checks import function
 from ikteach.view import doors
 from ikteach.view.acting import Actor, in_words
 from ikteach.view.closing import Living
-from ikteach.view.picture import Picture
+from ikteach.view.lacking import Note
+from ikteach.view.picture import Picture, Still
 from ikteach.view.plots import as_png
 from ikteach.view.prose import Prose
 from ikteach.view.status import Status
@@ -52,6 +53,7 @@ class Bench(Living, widgets.VBox):  # type: ignore[misc]
 
     controls  {name: widget with a value}
     buttons   {label: what it does}; then the picture is made anew
+    note      where a still picture stands, if it has a place already
     slot      only one of a slot lives at a time: to run a cell again closes the older one
 
     What goes wrong in `show` or in a button is told in the bench, in words, and the bench stays.
@@ -64,6 +66,7 @@ class Bench(Living, widgets.VBox):  # type: ignore[misc]
         *,
         slot: str | None,
         buttons: Mapping[str, Callable[[], None]] | None = None,
+        note: Note | None = None,
     ) -> None:
         self.controls, self.slot = doors.named("controls", controls, _control), slot
         self._show, self._stale = function("show", show), False
@@ -72,6 +75,7 @@ class Bench(Living, widgets.VBox):  # type: ignore[misc]
         self._act = Actor()
         self.status = Status()
         self._picture, self._below = Picture(), Prose()
+        self.note = note or Note()
         self.buttons = {label: widgets.Button(description=label) for label in buttons}
         for label, act in buttons.items():
             self.buttons[label].on_click(lambda _, act=act: self._after(act))
@@ -80,7 +84,7 @@ class Bench(Living, widgets.VBox):  # type: ignore[misc]
         rows = [*self.controls.values()]
         if self.buttons:
             rows.append(widgets.HBox(list(self.buttons.values())))
-        super().__init__([*rows, self.status, self._picture, self._below])
+        super().__init__([*rows, self.status, self._picture, self.note.widget, self._below])
         self.refresh()
 
     @property
@@ -119,8 +123,10 @@ class Bench(Living, widgets.VBox):  # type: ignore[misc]
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
         """The live widget, and beside it a still for places without a kernel."""
-        bundle = super()._repr_mimebundle_(**kwargs)
-        return {**bundle, "image/png": self._picture.png, "text/plain": self.words}
+        return self.note.beside(super()._repr_mimebundle_(**kwargs), self._still())
+
+    def _still(self) -> Still:
+        return Still(self._picture.png, self.words)
 
 
 def _control(name: str, value: Any) -> None:

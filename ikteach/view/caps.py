@@ -72,5 +72,5 @@ class CapPlayer(Living, widgets.VBox):  # type: ignore[misc]
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
         """The live widget, and beside it a still for places without a kernel."""
         still = self.player._repr_mimebundle_(**kwargs)
-        kept = {kind: still[kind] for kind in ("image/png", "text/plain")}
+        kept = {kind: still[kind] for kind in ("text/html", "image/png", "text/plain")}
         return {**super()._repr_mimebundle_(**kwargs), **kept}

@@ -82,4 +82,4 @@ function render({ model, el }) {
   };
 }
 
-export default { render };
+export default { render: told(render) };

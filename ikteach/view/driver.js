@@ -6,14 +6,7 @@
 // faster than it can be drawn is overwritten by what is newer.
 
 const REPORT_EVERY = 15; // frames; each report makes the kernel busy and idle, and the page says so
-
-async function resolve(manager, references) {
-  const models = await Promise.all(
-    references.map((reference) => manager.get_model(reference.slice("IPY_MODEL_".length))),
-  );
-  await Promise.all(models.map((model) => model.initPromise));
-  return models;
-}
+const LATE = 5000; // [ms] after which a figure that is not there counts as missing
 
 // Two kinds of movers: (numbers of the frame) => what they say is done.
 
@@ -60,25 +53,46 @@ function upright(matrix) { // how normals turn, where R stretches along its colu
   return turned;
 }
 
-async function render({ model, el }) {
+function render(given) {
+  const { model, el } = given;
   const status = document.createElement("p");
   status.className = "ikteach-driver";
   status.setAttribute("role", "img");
   el.appendChild(status);
 
-  const [renderer] = await resolve(model.widget_manager, [model.get("renderer")]);
-  const scene = renderer.get("scene");
+  const still = pictures(given); // for as long as there is no figure
+  let gone = false;
+  let renderer = null, scene = null;
   let movers = [], rows = -1; // what to move, and how many rows a frame for it has
   let gathering = 0;
   let newest = null; // the frame that is in the scene and not yet on the screen
   let reported = -1; // number of the newest frame that the kernel has been told of
   let shown = 0;
 
+  async function begin() {
+    if (!hasWebGL()) return without("webgl");
+    const late = setTimeout(() => without("pythreejs"), LATE);
+    const found = await sceneOf(given, () => gone);
+    clearTimeout(late);
+    if (gone) return;
+    ({ renderer, scene } = found);
+    still.stop();
+    scene.on("afterRender", drawn);
+    await gather();
+  }
+
+  function without(cause) {
+    if (gone) return;
+    still.start(cause);
+    hello();
+  }
+
   async function gather() {
+    if (!scene) return;
     const turn = ++gathering, plan = model.get("plan");
     let nodes;
     try {
-      nodes = await resolve(model.widget_manager, model.get("nodes"));
+      nodes = await resolve(given, model.get("nodes"));
     } catch {
       return; // the scene was closed meanwhile, and what it moved has gone
     }
@@ -88,24 +102,39 @@ async function render({ model, el }) {
     hello();
   }
 
-  function receive(content, buffers) {
-    if (content.frame === undefined || buffers[0].byteLength !== 48 * rows) return;
-    const { buffer, byteOffset, byteLength } = buffers[0];
-    const numbers = new Float32Array(buffer, byteOffset, byteLength / 4);
-    for (const move of movers) move(numbers);
-    newest = content;
-    renderer.trigger("rerender", renderer, {});
+  function receive(content, [bytes] = []) {
+    if (content.wrong !== undefined) throw new Error(content.wrong);
+    if (content.picture !== undefined) {
+      still.put(content.picture, bytes);
+      if (still.on) say(content.picture, content.change);
+    } else if (content.frame !== undefined && still.on) {
+      if (document.hidden) return;
+      still.follow(content.frame);
+      report(content.frame);
+    } else if (content.frame !== undefined && bytes?.byteLength === 48 * rows) {
+      const numbers = floats(bytes);
+      for (const move of movers) move(numbers);
+      newest = content;
+      renderer.trigger("rerender", renderer, {});
+    }
   }
 
   function drawn() {
     if (!newest) return;
     const { frame, change } = newest;
     newest = null;
+    say(frame, change);
+    report(frame);
+  }
+
+  function say(frame, change) {
     Object.assign(status.dataset, { frame, change, shown: ++shown });
-    if (frame - reported >= REPORT_EVERY) {
-      reported = frame;
-      model.send({ drawn: frame });
-    }
+  }
+
+  function report(frame) {
+    if (frame - reported < REPORT_EVERY) return;
+    reported = frame;
+    model.send({ drawn: frame });
   }
 
   function describe() {
@@ -118,18 +147,19 @@ async function render({ model, el }) {
   model.on("msg:custom", receive);
   model.on("change:plan", gather);
   model.on("change:description", describe);
-  scene.on("afterRender", drawn);
   document.addEventListener("visibilitychange", hello);
   describe();
-  await gather();
+  begin().catch((error) => complain(el, error));
 
   return () => {
+    gone = true;
+    still.stop();
     model.off("msg:custom", receive);
     model.off("change:plan", gather);
     model.off("change:description", describe);
-    scene.off("afterRender", drawn);
+    scene?.off("afterRender", drawn);
     document.removeEventListener("visibilitychange", hello);
   };
 }
 
-export default { render };
+export default { render: told(render) };

@@ -1,7 +1,6 @@
 """The one channel from the kernel to the scene: one binary message a frame, none queued."""
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from time import monotonic
 from typing import Any
 
@@ -10,7 +9,10 @@ import traitlets
 from ipywidgets import Widget, widget_serialization
 
 from ikteach.arrays import Array
+from ikteach.view.acting import Actor
 from ikteach.view.closing import Living
+from ikteach.view.esm import esm
+from ikteach.view.lacking import LACKING
 
 Move = tuple[Widget, int | list[list[int]]]
 """What is moved, and by which row of a frame; or, of a mesh, [row, points] of each of its parts."""
@@ -28,21 +30,26 @@ class Driver(Living, anywidget.AnyWidget):
     description   what the picture shows, in words, for those who cannot see it
     on_sign       is called with True when a page begins to look and with False when it has
                   drawn, from whichever thread hears of it
+    as_png        draws what was shown last, for a page that lacks pythreejs or WebGL
     """
 
-    _esm = Path(__file__).parent / "driver.js"
+    _esm = esm("pictures", "driver")
     renderer = traitlets.Instance(Widget).tag(sync=True, **widget_serialization)
     nodes = traitlets.List(traitlets.Instance(Widget)).tag(sync=True, **widget_serialization)
     plan: Any = traitlets.List().tag(sync=True)
     rows = traitlets.Int().tag(sync=True)
     description = traitlets.Unicode().tag(sync=True)
+    lacking = traitlets.Dict(LACKING, read_only=True).tag(sync=True)
 
     def __init__(self, renderer: Widget, **kwargs: Any) -> None:
         super().__init__(renderer=renderer, **kwargs)
         self.sent = self.drawn = -1
+        self._change = 0
         self.greeted = False
         self.heard = monotonic()
         self.on_sign: Callable[[bool], None] = lambda new: None
+        self.as_png: Callable[[], bytes] = bytes
+        self._act = Actor()
         self.on_msg(self._hear)
 
     def move(self, moves: Sequence[Move], rows: int) -> None:
@@ -54,6 +61,7 @@ class Driver(Living, anywidget.AnyWidget):
     def show(self, matrices: Array, change: int = 0) -> None:
         """Send [R | p] (rows, 3, 4) to the page. `change` comes back with the drawn frame."""
         self.sent += 1
+        self._change = change
         numbers = matrices.swapaxes(-1, -2).astype("<f4")
         self.send({"frame": self.sent, "change": change}, buffers=[numbers.tobytes()])
 
@@ -70,6 +78,9 @@ class Driver(Living, anywidget.AnyWidget):
 
     def _hear(self, _: Any, content: dict[str, Any], __: Any) -> None:
         self.heard = monotonic()
+        if "picture" in content:
+            self._act(self._depict, lambda words: self.send({"wrong": words}))
+            return
         new = "hello" in content
         if new:
             self.greeted = True
@@ -77,3 +88,7 @@ class Driver(Living, anywidget.AnyWidget):
         else:
             self.drawn = max(self.drawn, int(content["drawn"]))
         self.on_sign(new)
+
+    def _depict(self) -> None:
+        """Send the page a picture of the newest frame."""
+        self.send({"picture": self.sent, "change": self._change}, buffers=[self.as_png()])

@@ -16,14 +16,6 @@ const KEYPAD = { Numpad4: "ArrowLeft", Numpad6: "ArrowRight", Numpad2: "ArrowDow
                  Numpad8: "ArrowUp", Numpad9: "PageUp", Numpad3: "PageDown" }; // with num lock, too
 const named = (event) => KEYPAD[event.code] ?? event.key;
 
-async function resolve(manager, references) {
-  const models = await Promise.all(
-    references.map((reference) => manager.get_model(reference.slice("IPY_MODEL_".length))),
-  );
-  await Promise.all(models.map((one) => one.initPromise));
-  return models;
-}
-
 function line(el, role) {
   const p = document.createElement("p");
   p.className = "ikteach-said";
@@ -32,15 +24,22 @@ function line(el, role) {
   return p;
 }
 
-async function render({ model, el }) {
+function render(given) {
+  let gone = false, leave = null;
+  sceneOf(given, () => gone).then(async (found) => {
+    leave = found && await takeHold(given, found);
+    if (gone) leave?.();
+  }).catch((error) => complain(given.el, error));
+  return () => { gone = true; leave?.(); };
+}
+
+async function takeHold(given, { renderer, scene }) {
+  const { model, el } = given;
   const style = document.createElement("style");
   style.textContent = STYLE;
   el.appendChild(style);
   const said = line(el, "status"), alert = line(el, "alert");
-  const [renderer, halo, ...nodes] = await resolve(model.widget_manager, [
-    model.get("renderer"), model.get("halo"), ...model.get("nodes"),
-  ]);
-  const scene = renderer.get("scene");
+  const [halo, ...nodes] = await resolve(given, [model.get("halo"), ...model.get("nodes")]);
   const names = model.get("names"), places = model.get("places");
   const post = courier(model);
   let alive = true, stage = null, chosen = -1, drag = null;
@@ -271,4 +270,4 @@ async function render({ model, el }) {
   };
 }
 
-export default { render };
+export default { render: told(render) };

@@ -1,6 +1,5 @@
 """Targets that are taken hold of in the scene: by mouse, by finger, by keys."""
 
-from pathlib import Path
 from typing import Any
 
 import anywidget
@@ -10,11 +9,11 @@ from ipywidgets import Widget, widget_serialization
 
 from ikteach.view.acting import in_words
 from ikteach.view.closing import Living
+from ikteach.view.esm import esm
 from ikteach.view.positions import Positions
 from ikteach.view.scene import Scene
 from ikteach.view.skin import SKY
 
-HERE = Path(__file__).parent
 STEP = 0.05  # [m] one press of an arrow key, on a figure of a human's size
 
 
@@ -32,7 +31,7 @@ class Handles(Living, anywidget.AnyWidget):
     """
 
     foreign = frozenset({"renderer", "nodes"})  # the scene's
-    _esm = (HERE / "courier.js").read_text() + (HERE / "handles.js").read_text()
+    _esm = esm("courier", "handles")
     renderer = traitlets.Instance(Widget).tag(sync=True, **widget_serialization)
     halo = traitlets.Instance(Widget).tag(sync=True, **widget_serialization)
     nodes = traitlets.List(traitlets.Instance(Widget)).tag(sync=True, **widget_serialization)

@@ -11,6 +11,7 @@ import ipywidgets as widgets
 
 from ikteach.view.acting import Actor, in_words
 from ikteach.view.closing import Living
+from ikteach.view.picture import Still
 from ikteach.view.scene import Scene
 from ikteach.view.status import Status
 from ikteach.view.strips import EVERY, Strips
@@ -108,7 +109,7 @@ class Live(Living, widgets.VBox):  # type: ignore[misc]
         """The live widget, and beside it a still for places without a kernel."""
         bundle = super()._repr_mimebundle_(**kwargs)
         self.draw()
-        return {**bundle, "image/png": self.scene.still().png, "text/plain": self.words}
+        return self.scene.note.beside(bundle, Still(self.scene.still().png, self.words))
 
     # Callbacks may come on another thread: they are handed over, and the loop's thread acts.
 

@@ -8,6 +8,7 @@ import traitlets
 
 from ikteach.markup import Markup
 from ikteach.view.closing import Living
+from ikteach.view.esm import esm
 
 _ESM = """
 function render({ model, el }) {
@@ -17,7 +18,7 @@ function render({ model, el }) {
   function update() {
     if (url) URL.revokeObjectURL(url);
     const png = model.get("png");
-    url = png.byteLength ? URL.createObjectURL(new Blob([png], { type: "image/png" })) : null;
+    url = png?.byteLength ? URL.createObjectURL(new Blob([png], { type: "image/png" })) : null;
     if (url) image.src = url;
     image.alt = model.get("alt");
   }
@@ -26,14 +27,14 @@ function render({ model, el }) {
   el.appendChild(image);
   return () => { model.off("change", update); if (url) URL.revokeObjectURL(url); };
 }
-export default { render };
+export default { render: told(render) };
 """
 
 
 class Picture(Living, anywidget.AnyWidget):
     """A PNG and its text alternative; both can change at any time."""
 
-    _esm = _ESM
+    _esm = esm() + _ESM
     png = traitlets.Bytes(b"").tag(sync=True)
     alt = traitlets.Unicode("").tag(sync=True)
 

@@ -1,12 +1,12 @@
 """A plot and a table in which one thing is chosen, by pointing or with the keyboard."""
 
-from pathlib import Path
 from typing import Any
 
 import anywidget
 import traitlets
 
 from ikteach.view.closing import Living
+from ikteach.view.esm import esm
 
 
 class Curve(Living, anywidget.AnyWidget):
@@ -19,7 +19,7 @@ class Curve(Living, anywidget.AnyWidget):
     chosen    the number of the chosen one
     """
 
-    _esm = Path(__file__).parent / "curve.js"
+    _esm = esm("curve")
     png = traitlets.Bytes(b"").tag(sync=True)
     alt = traitlets.Unicode("").tag(sync=True)
     span = traitlets.List([0.0, 1.0]).tag(sync=True)
@@ -34,7 +34,7 @@ class Rows(Living, anywidget.AnyWidget):
     header, rows  words; chosen: the number of the chosen row
     """
 
-    _esm = Path(__file__).parent / "rows.js"
+    _esm = esm("rows")
     header: Any = traitlets.List().tag(sync=True)
     rows: Any = traitlets.List().tag(sync=True)
     chosen = traitlets.Int(0).tag(sync=True)

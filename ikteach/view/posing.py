@@ -15,6 +15,7 @@ from ikteach.markup import Markup, plain
 from ikteach.view import doors
 from ikteach.view.bench import WIDE, Bench, Shown, choice, log_slider
 from ikteach.view.lengths import Lengths, digits_of, round_step
+from ikteach.view.picture import Still
 from ikteach.view.prose import grid
 from ikteach.view.scene import Scene
 
@@ -38,7 +39,7 @@ class SceneBench(Bench):
         panel: Sequence[widgets.Widget] | None = None,
     ) -> None:
         self.scene = scene
-        super().__init__(show, controls, slot=slot)
+        super().__init__(show, controls, slot=slot, note=scene.note)
         column = widgets.VBox(
             list(panel if panel is not None else controls.values()),
             layout=widgets.Layout(flex="1 1 380px", min_width="340px"),
@@ -59,9 +60,8 @@ class SceneBench(Bench):
         if new:  # a page that has just opened knows no pose
             self._after(None)
 
-    def _repr_mimebundle_(self, **kwargs: Any) -> Any:
-        bundle = super()._repr_mimebundle_(**kwargs)
-        return {**bundle, "image/png": self.scene.still().png}
+    def _still(self) -> Still:
+        return Still(self.scene.still().png, self.words)
 
 
 class Poser(SceneBench):

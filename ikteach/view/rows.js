@@ -93,4 +93,4 @@ function render({ model, el }) {
   return () => { model.off("change:rows", fill); model.off("change:chosen", move); };
 }
 
-export default { render };
+export default { render: told(render) };

@@ -19,6 +19,7 @@ from ikteach.view.cameras import Cameras
 from ikteach.view.closing import Living, close_all
 from ikteach.view.driver import Driver, Move
 from ikteach.view.fused import Piece, fused, shifted
+from ikteach.view.lacking import Note
 from ikteach.view.overlays import MAKERS, Layer
 from ikteach.view.picture import Still
 from ikteach.view.skin import DARK, EFFECTOR_COLOURS, GREY, LIGHT, SHIRT, Part
@@ -86,12 +87,14 @@ class Scene(Living):
         self.look_from(stage.side)
         self.driver = Driver(self.renderer, description=stage.words)
         self.driver.on_sign = self._greet
+        self.driver.as_png = lambda: self.still().png
         self.driver.move(self._moves, self._rows)
+        self.note = Note()
         self._made: dict[str, Layer] = {}
         self._on: set[str] = set()
         self._dark = dark
         self._last: dict[str, Any] = {}
-        self.widget = widgets.VBox([self.renderer, self.driver])
+        self.widget = widgets.VBox([self.renderer, self.driver, self.note.widget])
         self.widget.add_class("ikteach-scene")
 
     @property
@@ -115,6 +118,7 @@ class Scene(Living):
     def look_from(self, side: str) -> None:
         """Put the camera to one of `CAMERAS`, or to "plane": along the normal of its plane."""
         self.cameras.look_from(side)
+        self._side = side
 
     @property
     def dark(self) -> bool:
@@ -172,6 +176,7 @@ class Scene(Living):
             dark=self._dark, width=self.renderer.width, height=self.renderer.height, slot=None,
         )  # fmt: skip
         try:
+            picture.look_from(self._side)
             for name in self._on:
                 picture.switch(name)
             if self._last:
@@ -182,9 +187,7 @@ class Scene(Living):
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
         """The live widget, and beside it a still for places without a kernel."""
-        bundle = self.widget._repr_mimebundle_(**kwargs)
-        still = self.still()
-        return {**bundle, "image/png": still.png, "text/plain": still.alt}
+        return self.note.beside(self.widget._repr_mimebundle_(**kwargs), self.still())
 
     def _greet(self, new: bool) -> None:
         """Show a page that begins to look what was shown last."""

@@ -4,6 +4,7 @@ import anywidget
 import traitlets
 
 from ikteach.view.closing import Living
+from ikteach.view.esm import esm
 
 _ESM = """
 function render({ model, el }) {
@@ -24,14 +25,14 @@ function render({ model, el }) {
   update();
   return () => model.off("change", update);
 }
-export default { render };
+export default { render: told(render) };
 """
 
 
 class Status(Living, anywidget.AnyWidget):
     """A sentence on what goes on, and one on what went wrong."""
 
-    _esm = _ESM
+    _esm = esm() + _ESM
     said = traitlets.Unicode("").tag(sync=True)
     wrong = traitlets.Unicode("").tag(sync=True)
 

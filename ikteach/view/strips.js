@@ -30,8 +30,7 @@ function render({ model, el }) {
   function receive({ fresh, rows }, buffers) {
     if (fresh) samples = [];
     if (rows) {
-      const { buffer, byteOffset, byteLength } = buffers[0];
-      const numbers = new Float32Array(buffer.slice(byteOffset, byteOffset + byteLength));
+      const numbers = floats(buffers[0]);
       for (let i = 0; i < rows; i++) samples.push(numbers.subarray(i * width, (i + 1) * width));
       const oldest = samples.at(-1)[0] - seconds;
       samples = samples.filter((sample) => sample[0] >= oldest);
@@ -125,4 +124,4 @@ function paint({ panel, first, canvas }, samples, seconds) {
   }
 }
 
-export default { render };
+export default { render: told(render) };

@@ -5,7 +5,6 @@ that the figure does not wait for a picture of a plot to be made.
 """
 
 from itertools import takewhile
-from pathlib import Path
 from typing import Any
 
 import anywidget
@@ -15,6 +14,7 @@ import traitlets
 from ikteach.motion.log import Log
 from ikteach.motion.session import Session
 from ikteach.view.closing import Living
+from ikteach.view.esm import esm
 from ikteach.view.lengths import Lengths, decade
 from ikteach.view.skin import EFFECTOR_COLOURS
 
@@ -31,7 +31,7 @@ class Strips(Living, anywidget.AnyWidget):
     method, and each method's jitter, ‖Δ²θ‖ a tick. Lines differ in dashes as well as in colour.
     """
 
-    _esm = Path(__file__).parent / "strips.js"
+    _esm = esm("strips")
     panels: Any = traitlets.List().tag(sync=True)
     seconds = traitlets.Float(SECONDS).tag(sync=True)
     alt = traitlets.Unicode("No tick yet.").tag(sync=True)

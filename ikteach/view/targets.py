@@ -1,7 +1,6 @@
 """Sliders and number boxes for targets, which always agree with the handles in the scene."""
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import anywidget
@@ -13,6 +12,7 @@ from ikteach.checks import numbers
 from ikteach.view import doors
 from ikteach.view.acting import in_words
 from ikteach.view.closing import Living
+from ikteach.view.esm import esm
 from ikteach.view.handles import Handles
 from ikteach.view.lengths import Lengths, digits_of, round_step
 from ikteach.view.positions import Positions
@@ -20,7 +20,6 @@ from ikteach.view.scene import Scene
 from ikteach.view.solids import effector_colour
 from ikteach.view.stage import View
 
-HERE = Path(__file__).parent
 ROOM = 1.5  # [m] how far a target of a human may go from where it starts, each way
 
 
@@ -36,7 +35,7 @@ class Targets(Living, anywidget.AnyWidget):
     number boxes, by `move`.
     """
 
-    _esm = (HERE / "courier.js").read_text() + (HERE / "targets.js").read_text()
+    _esm = esm("courier", "targets")
     names = traitlets.List(traitlets.Unicode()).tag(sync=True)
     colours = traitlets.List(traitlets.Unicode()).tag(sync=True)
     low: Any = traitlets.List().tag(sync=True)
