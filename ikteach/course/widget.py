@@ -59,7 +59,7 @@ class Question(Living, anywidget.AnyWidget):
         """The widget, and beside it the question to read in places without a kernel."""
         bundle = super()._repr_mimebundle_(**kwargs)
         data, metadata = bundle if isinstance(bundle, tuple) else (bundle, {})
-        still = {"text/html": self._still(), "text/plain": self.question}
+        still = {"text/html": str(self._still()), "text/plain": self.question}
         return {**(data or {}), **still}, metadata
 
     def _still(self) -> str:

@@ -57,7 +57,7 @@ class Note:
         words = in_place_of(still)
         self.widget.value = STYLE + words
         return {
-            **bundle, "text/html": words, "image/png": still.png, "text/plain": still.alt,
+            **bundle, "text/html": str(words), "image/png": still.png, "text/plain": still.alt,
         }  # fmt: skip
 
 

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 import pytest
 from PIL import Image
-from playwright.sync_api import Browser, Error, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserType, Error, Page, sync_playwright
 
 ROOT = Path(__file__).parents[2]
 SHOTS = ROOT / "tests" / "shots"
@@ -190,8 +190,13 @@ def pixels(png: bytes) -> np.ndarray:
 
 def open_browser(play: Any) -> Browser:
     """The system's Chromium where there is one, else the one that Playwright has installed."""
+    return launch(play.chromium)
+
+
+def launch(chromium: BrowserType, *flags: str) -> Browser:
+    """The same, with more flags for it."""
     system = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
-    return play.chromium.launch(executable_path=system, args=FLAGS, headless=True)
+    return chromium.launch(executable_path=system, args=[*FLAGS, *flags], headless=True)
 
 
 def open_page(browser: Browser, width: int = 1440, height: int = 1100) -> Page:
