@@ -49,6 +49,7 @@ class Driver(Living, anywidget.AnyWidget):
         self.heard = monotonic()
         self.on_sign: Callable[[bool], None] = lambda new: None
         self.as_png: Callable[[], bytes] = bytes
+        self._asked = False
         self._act = Actor()
         self.on_msg(self._hear)
 
@@ -79,7 +80,9 @@ class Driver(Living, anywidget.AnyWidget):
     def _hear(self, _: Any, content: dict[str, Any], __: Any) -> None:
         self.heard = monotonic()
         if "picture" in content:
-            self._act(self._depict, lambda words: self.send({"wrong": words}))
+            if not self._asked:  # however many pages ask
+                self._asked = True
+                self._act(self._depict, lambda words: self.send({"wrong": words}))
             return
         new = "hello" in content
         if new:
@@ -91,4 +94,5 @@ class Driver(Living, anywidget.AnyWidget):
 
     def _depict(self) -> None:
         """Send the page a picture of the newest frame."""
+        self._asked = False
         self.send({"picture": self.sent, "change": self._change}, buffers=[self.as_png()])
