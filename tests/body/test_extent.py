@@ -30,7 +30,8 @@ def test_no_pose_leaves_it(figure, seed):
     tree, effectors = figure
     rng = np.random.default_rng(seed)
     theta = poses(tree, rng, (200,))
-    theta[:100] = np.where(rng.random((100, len(tree))) < 0.5, tree.lower, tree.upper)
+    ends = np.where(rng.random((100, len(tree))) < 0.5, tree.lower, tree.upper)
+    theta[:100] = np.where(np.isfinite(ends), ends, theta[:100])  # a free joint has no end
     centre, radius = extent(tree, effectors)
     far = np.linalg.norm(everything(tree, effectors, theta) - centre, axis=-1)
     assert far.max() <= radius * (1 + 1e-9)
