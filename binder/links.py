@@ -29,7 +29,7 @@ def chapters(root: Path = ROOT) -> dict[str, str]:
 
 def lecture(root: Path = ROOT) -> dict[str, str]:
     """Page for a lecture, such as "race", -> what the server is asked for: the page by Voilà."""
-    pages = root / "ikteach" / "course" / "lecture" / "pages"
+    pages = root / "ikteach" / "serve" / "lecture" / "pages"
     return {
         path.stem: f"voila/render/{path.relative_to(root).as_posix()}"
         for path in sorted(pages.glob("*.ipynb"))

@@ -10,8 +10,9 @@ from pathlib import Path
 from urllib.parse import quote
 
 from ikteach import __version__
-from ikteach.course import ports
-from ikteach.course.opening import Course, chapters, deliver, find_course, told
+from ikteach.publish.delivery import Course, chapters, deliver, find_course, told
+from ikteach.publish.parser import Parser, meant, shown
+from ikteach.serve import ports
 
 PACKAGE = Path(__file__).resolve().parent
 COMMANDS = ("build", "collect", "lecture", "site")
@@ -24,17 +25,17 @@ def main(argv: list[str] | None = None) -> int:
     argv = sys.argv[1:] if argv is None else argv
     try:
         if argv[:1] == ["build"]:
-            from ikteach.course import builds
+            from ikteach.publish import builds
 
             return builds.main(PACKAGE, argv[1:])
         if argv[:1] == ["collect"]:
-            from ikteach.course import collect
+            from ikteach.publish import collect
 
             return collect.main(argv[1:])
         if argv[:1] == ["lecture"]:
             return open_lecture(argv[1:])
         if argv[:1] == ["site"]:
-            from ikteach.course import site
+            from ikteach.publish import site
 
             return site.main(PACKAGE, argv[1:])
         if reason := misspelt(argv):
@@ -52,16 +53,16 @@ def misspelt(argv: list[str]) -> str:
     late = [command for command in COMMANDS if command in argv and "--" not in argv]
     if late and word.startswith("-"):
         return f"The command comes first: python -m ikteach {late[0]} …"
-    meant = ports.meant(word, [*COMMANDS, "--list", "--help", "--version"])
-    if not meant or word.startswith("-") or os.sep in word or Path(word).exists():
+    hint = meant(word, [*COMMANDS, "--list", "--help", "--version"])
+    if not hint or word.startswith("-") or os.sep in word or Path(word).exists():
         return ""
     folder = os.path.join(".", word)
-    return f"There is no command {ports.shown(word)}{meant} For a folder of that name: {folder}"
+    return f"There is no command {shown(word)}{hint} For a folder of that name: {folder}"
 
 
 def parse(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
     """Our options, and those for JupyterLab: what follows `--`."""
-    parser = ports.Parser(
+    parser = Parser(
         prog="python -m ikteach",
         usage="%(prog)s [FOLDER] [--no-browser] [--port N] [--list] [--version]"
         " [-- JUPYTERLAB OPTIONS]\n"
@@ -109,7 +110,7 @@ def open_course(course: Course, options: argparse.Namespace, extra: list[str]) -
 
 def open_lecture(argv: list[str]) -> int:
     """Show the live figures as web pages, until Ctrl-C; give the exit code."""
-    from ikteach.course import lecture
+    from ikteach.serve import lecture
 
     options, extra = lecture.parse(argv)
     if reason := ports.hindrance("Voilà", "voila", "lecture", options.port):
@@ -135,7 +136,7 @@ def lab_command(folder: Path, first: str, port: int | None, extra: list[str]) ->
     """The command that starts JupyterLab in `folder` with the notebook `first` open."""
     command = [sys.executable, "-m", "jupyterlab", f"--ServerApp.root_dir={folder}"]
     command += [f"--LabApp.default_url=/lab/tree/{quote(first)}"]
-    command += ["--ServerApp.jpserver_extensions={'ikteach.server': True}"]
+    command += ["--ServerApp.jpserver_extensions={'ikteach.serve.extension': True}"]
     # Ask nothing of the network: no news, no look for a newer JupyterLab.
     command += ["--LabApp.news_url=None"]
     command += ["--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate"]
@@ -146,7 +147,7 @@ def lab_command(folder: Path, first: str, port: int | None, extra: list[str]) ->
 
 def lab_environment(course: Course) -> dict[str, str]:
     """The environment of JupyterLab; from a clone, its kernels find this very package."""
-    quiet = str(PACKAGE / "course" / "lab")  # does not ask a beginner whether they want news
+    quiet = str(PACKAGE / "serve" / "lab")  # does not ask a beginner whether they want news
     ours = {"JUPYTER_CONFIG_PATH": quiet, "PYTHONPATH": str(PACKAGE.parent) if course.clone else ""}
     paths = {name: [path, os.environ.get(name, "")] for name, path in ours.items()}
     joined = {name: os.pathsep.join(filter(None, both)) for name, both in paths.items()}

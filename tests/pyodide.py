@@ -15,7 +15,7 @@ import zipfile
 from pathlib import Path
 from typing import Any
 
-from ikteach.course import site, wheels
+from ikteach.publish import site, wheels
 
 WANTED = [*site.START, "typing-extensions", "numpy", "pandas", "matplotlib"]
 

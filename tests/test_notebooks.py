@@ -17,8 +17,8 @@ import nbformat
 import pytest
 import rounding
 
-from ikteach.course import builds
-from ikteach.course.pages import runner
+from ikteach.publish import builds
+from ikteach.publish.pages import runner
 
 NOTEBOOKS = sorted((Path(__file__).parents[1] / "notebooks").glob("*.ipynb"))
 OTHER_PROCESSOR = f"""{Path(rounding.__file__).read_text(encoding="utf-8")}

@@ -7,15 +7,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ikteach import SOLVERS, figures, gait, study, track, trials
-from ikteach.motion import experiment
+from ikteach import SOLVERS, figures, gait, study, track
 from ikteach.motion.anatomy import anatomy
-from ikteach.motion.log import Log
-from ikteach.motion.planar import PlanarReach
-from ikteach.motion.reach import Reach, reachable_cursors, trial
+from ikteach.motion.live.log import Log
+from ikteach.motion.reach.planar import PlanarReach
+from ikteach.motion.reach.reaching import Reach, reachable_cursors, trial
+from ikteach.motion.reach.ways import WAYS, Way, advance
 from ikteach.motion.reachable import nearest
-from ikteach.motion.ways import WAYS, Way, advance
 from ikteach.solvers import cramer, dls
+from ikteach.study import experiment, trials
 
 ARM = figures.planar_arm(3)
 HUMAN = figures.human()

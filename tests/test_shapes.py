@@ -18,10 +18,10 @@ from ikteach.body.jacobian import cross
 from ikteach.body.tree import Plan, skew
 from ikteach.motion import gait, per_chain, reachable, step, track, whole
 from ikteach.motion.anatomy import Anatomy, anatomy
-from ikteach.motion.log import Log
+from ikteach.motion.live.log import Log
+from ikteach.motion.live.session import Session
 from ikteach.motion.mix import Mix
 from ikteach.motion.reachable import nearest
-from ikteach.motion.session import Session
 from ikteach.motion.step import clamp_error
 from ikteach.solvers import adjugate, cramer, determinant, ellipsoid, independence, sdls
 from ikteach.solvers.response import Directions, directions, factors, filtered, response

@@ -43,7 +43,7 @@ c.Spawner.cmd = [sys.executable, str(HERE / "start.py")]
 c.Spawner.notebook_dir = "~/ikteach-course"
 c.Spawner.default_url = "/lab/tree/00_figure.ipynb"
 c.Spawner.args = [
-    "--ServerApp.jpserver_extensions=ikteach.server=True",  # frames in time
+    "--ServerApp.jpserver_extensions=ikteach.serve.extension=True",  # frames in time
     # Kernels take no ports: of twenty that start at once, two may choose the same one, and a kernel
     # that finds its port taken dies. And a port is open to everybody on the machine.
     "--KernelManager.transport=ipc",

@@ -8,7 +8,7 @@ from pathlib import Path
 from jupyterhub.singleuser import main
 
 import ikteach
-from ikteach.course.opening import deliver, find_course, told
+from ikteach.publish.delivery import deliver, find_course, told
 
 FOLDER = Path.home() / "ikteach-course"
 

@@ -117,7 +117,7 @@ def heels(tree: Tree) -> Effectors:
 
 
 # Rows that one angle turns. The tree keeps a row each, so that `forward` and `jacobian` need not
-# know; who moves the figure gives both the same angle (`ikteach.motion.packages.coupling`).
+# know; who moves the figure gives both the same angle (`ikteach.motion.reach.packages.coupling`).
 TOGETHER = (("back.lower", "back.upper"),)
 
 

@@ -72,7 +72,7 @@ NO_ANSWER = "That is no answer to this question."
 
 def _choices(key: str, options: Sequence[str]) -> list[str]:
     """The options as a list; TypeError or ValueError says what they are not."""
-    from ikteach.view import doors
+    from ikteach.view.widgets import doors
 
     choices = doors.words(f"the options of {key!r}", options)
     if len(set(choices)) < max(2, len(choices)):
@@ -85,7 +85,7 @@ def _choices(key: str, options: Sequence[str]) -> list[str]:
 
 def _range(key: str, numbers: Any) -> tuple[float, float, str]:
     """Low, high and unit; TypeError or ValueError says what they are not."""
-    from ikteach.view import doors
+    from ikteach.view.widgets import doors
 
     if not (isinstance(numbers, tuple | list) and len(numbers) == 3):
         raise TypeError(f"the numbers of {key!r} must be (low, high, unit), not {shown(numbers)}")

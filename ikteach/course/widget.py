@@ -8,10 +8,10 @@ import anywidget
 import traitlets
 
 from ikteach.markup import Markup, untouched
-from ikteach.view import doors
-from ikteach.view.acting import in_words
-from ikteach.view.closing import Living, occupant
-from ikteach.view.esm import esm
+from ikteach.view.widgets import doors
+from ikteach.view.widgets.actor import in_words
+from ikteach.view.widgets.closing import Living, occupant
+from ikteach.view.widgets.esm import esm
 
 
 class Question(Living, anywidget.AnyWidget):

@@ -41,7 +41,7 @@ MISSING = "movies need the PyAV library: pip install 'ikteach[movie]'"
 IN_THE_BROWSER = (
     "there is no PyAV for the Python that runs in the browser; save the session, and where "
     "ikteach[movie] is installed movie.write('walk.mp4', film(session.load('session'))) films it, "
-    "with ikteach.formats.movie, ikteach.formats.session and ikteach.view.filming.film"
+    "with ikteach.formats.movie, ikteach.formats.session and ikteach.view.raster.film.film"
 )
 FASTEST = {".gif": 50}  # a GIF counts in hundredths, and players slow down what is under two
 

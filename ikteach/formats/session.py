@@ -24,8 +24,8 @@ from ikteach.files import (
 )
 from ikteach.formats import table as numbers
 from ikteach.formats import told as words
-from ikteach.motion.log import Log
-from ikteach.motion.session import Session
+from ikteach.motion.live.log import Log
+from ikteach.motion.live.session import Session
 
 FORMAT, VERSION = "ikteach session", 1
 MOST = 64 * 2**20  # [bytes] of the JSON file

@@ -17,7 +17,7 @@ import numpy as np
 
 from ikteach.body import Effectors, Tree
 from ikteach.files import quoted, read_text
-from ikteach.motion.log import Log
+from ikteach.motion.live.log import Log
 
 PER_TICK = ("tick", "time", "phase", "advance", "floor", "shown")  # columns before "method"
 MOST = 512 * 2**20  # [bytes]

@@ -4,23 +4,24 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ikteach.view.bend import BendBench
-    from ikteach.view.player import GaitPlayer
-    from ikteach.view.posing import ColumnPoser, Poser
-    from ikteach.view.scene import Scene
-    from ikteach.view.simulator import Simulator
-    from ikteach.view.still import StillScene
-    from ikteach.view.workbench import Workbench
+    from ikteach.view.chapters.figure import Poser
+    from ikteach.view.chapters.gait import GaitPlayer
+    from ikteach.view.chapters.jacobian import ColumnPoser
+    from ikteach.view.chapters.reach import Simulator
+    from ikteach.view.chapters.singularity import BendBench
+    from ikteach.view.chapters.workbench import Workbench
+    from ikteach.view.raster.still import StillScene
+    from ikteach.view.webgl.scene import Scene
 
 _HOMES = {
-    "BendBench": "bend",
-    "ColumnPoser": "posing",
-    "GaitPlayer": "player",
-    "Poser": "posing",
-    "Scene": "scene",
-    "Simulator": "simulator",
-    "StillScene": "still",
-    "Workbench": "workbench",
+    "BendBench": "chapters.singularity",
+    "ColumnPoser": "chapters.jacobian",
+    "GaitPlayer": "chapters.gait",
+    "Poser": "chapters.figure",
+    "Scene": "webgl.scene",
+    "Simulator": "chapters.reach",
+    "StillScene": "raster.still",
+    "Workbench": "chapters.workbench",
 }
 
 __all__ = [

@@ -8,9 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ikteach.markup import as_label
-from ikteach.view.picture import Still
 from ikteach.view.plots import STYLES
-from ikteach.view.skin import EFFECTOR_COLOURS
+from ikteach.view.stage.skin import EFFECTOR_COLOURS
+from ikteach.view.widgets.picture import Still
 
 HATCHES = ("", "//", "..", "xx", "--", "oo")
 MARKS = ("o", "s", "^", "D", "v", "P")

@@ -7,7 +7,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from ikteach.markup import as_label
-from ikteach.view.picture import Still
+from ikteach.view.widgets.picture import Still
 
 FEW = 1e-12  # an entry below it counts as zero
 

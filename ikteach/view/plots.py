@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from ikteach.arrays import Array
 from ikteach.body import Effectors, Tree
 from ikteach.markup import as_label
-from ikteach.view.picture import Still
-from ikteach.view.skin import EFFECTOR_COLOURS
+from ikteach.view.stage.skin import EFFECTOR_COLOURS
+from ikteach.view.widgets.picture import Still
 
 STYLES = ("-", "--", "-.", ":")
 LEAST = 1e-4  # [m] distances below it are drawn as it: the axes are logarithmic

@@ -30,7 +30,7 @@ PATIENCE = 300  # [s] for a server or a cell, when a whole class starts at once
 PROTOCOL = "v1.kernel.websocket.jupyter.org"
 SEARCH = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
 
-DRIVER_JS = (ROOT / "ikteach" / "view" / "driver.js").read_text()
+DRIVER_JS = (ROOT / "ikteach" / "view" / "webgl" / "driver.js").read_text()
 (REPORT_EVERY,) = map(int, re.findall(r"REPORT_EVERY = (\d+)", DRIVER_JS))
 CELLS = json.loads((ROOT / "notebooks" / "07_gait.ipynb").read_text())["cells"]
 (PLAYER,) = ("".join(cell["source"]) for cell in CELLS if cell["id"] == "player")

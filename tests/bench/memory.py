@@ -24,7 +24,8 @@ from pathlib import Path
 from time import monotonic
 import psutil
 from ipywidgets.widgets.widget import _instances
-from ikteach.view import live, workbench
+from ikteach.view.chapters import workbench
+from ikteach.view.live import live
 def loops():
     tasks = asyncio.all_tasks(bench._act.loop)
     return sum("Live._run" in task.get_coro().__qualname__ for task in tasks)

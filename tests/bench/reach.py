@@ -8,9 +8,9 @@ cap, to see the largest step of a joint in one tick, then with the simulator's c
 import sys
 
 from ikteach import study
-from ikteach.motion.packages import Body
-from ikteach.motion.reach import reachable_cursors
-from ikteach.motion.ways import MAX_STEP, PARTS
+from ikteach.motion.reach.packages import Body
+from ikteach.motion.reach.reaching import reachable_cursors
+from ikteach.motion.reach.ways import MAX_STEP, PARTS
 
 
 def main(cursors=2000, ticks=300):

@@ -26,8 +26,8 @@ from ikteach.body import figures, forward, jacobian, locate
 from ikteach.motion import gait, step
 from ikteach.solvers.singularity import ellipsoid
 from ikteach.view import Scene
-from ikteach.view.stage import LAYERS
-from ikteach.view.targets import Targets
+from ikteach.view.stage.stage import LAYERS
+from ikteach.view.webgl.targets import Targets
 tree, effectors = figures.human()
 methods = ["transpose", "pseudoinverse", "dls", "sdls"]
 scenes = []
@@ -92,7 +92,7 @@ new MutationObserver(() => {{
 }}).observe(document, {{ subtree: true, attributes: true, attributeFilter: ["data-change"] }});
 """
 AT = """
-from ikteach.view.stage import picture_axes
+from ikteach.view.stage.stage import picture_axes
 eye = np.array(scene.camera.position)
 back = eye - scene.stage.extent.centre
 seen = (targets.positions[3] + scene.stage.places[0] - eye) @ picture_axes(back)

@@ -54,13 +54,13 @@ class Lab:
         command = [sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root"]
         command += [f"--ServerApp.port={self.port}", "--ServerApp.port_retries=0"]
         command += [f"--ServerApp.root_dir={folder}", "--LabApp.expose_app_in_browser=True"]
-        command += ["--ServerApp.jpserver_extensions={'ikteach.server': True}"]
+        command += ["--ServerApp.jpserver_extensions={'ikteach.serve.extension': True}"]
         command += [f"--IdentityProvider.token={self.token}", "--LabApp.news_url=None"]
         command += ["--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate"]
         environment = os.environ | {
             "OPENBLAS_NUM_THREADS": "1",
             "JUPYTER_CONFIG_DIR": str(folder / ".config"),
-            "JUPYTER_CONFIG_PATH": str(ROOT / "ikteach" / "course" / "lab"),
+            "JUPYTER_CONFIG_PATH": str(ROOT / "ikteach" / "serve" / "lab"),
             "JUPYTERLAB_SETTINGS_DIR": str(folder / ".settings"),
             "JUPYTERLAB_WORKSPACES_DIR": str(folder / ".workspaces"),
         }

@@ -16,7 +16,7 @@ from playwright.sync_api import Browser
 from binder.links import chapters, lecture
 from binder.recipe import Build
 from binder.rehearse import MEMORY, Server, look, serving
-from ikteach.course.opening import title
+from ikteach.publish.delivery import title
 from tests.browser.conftest import ROOT, SHOTS
 
 
@@ -32,7 +32,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
 
 def test_what_the_build_prepared(server: Server) -> None:
     assert list(server.home.glob(".cache/matplotlib/fontlist-*.json"))
-    assert "ikteach.server | extension was successfully loaded" in server.log.read_text()
+    assert "ikteach.serve.extension | extension was successfully loaded" in server.log.read_text()
     environment = psutil.Process(server.process.pid).environ()
     assert environment["OMP_NUM_THREADS"] == environment["OPENBLAS_NUM_THREADS"] == "1"
 

@@ -38,7 +38,7 @@ CHAPTERS = [
     Chapter("06_sdls.ipynb", "bench = spectrum_bench()", "bench", PICTURE),
     Chapter("08_comparison.ipynb", "race = Race()", "race", CANVAS),
 ]
-ENDS = """from ikteach.view.closing import occupant
+ENDS = """from ikteach.view.widgets.closing import occupant
 
 def all_to(figure, which):
     "All sliders at once to one of their ends. (One by one, without a page: tests/view.)"

@@ -174,7 +174,7 @@ def test_curves_and_table_are_alive_and_have_words(gait: Notebook) -> None:
 
 def test_one_message_a_frame_and_no_queue(gait: Notebook) -> None:
     count = """
-import ikteach.view.driver as _d
+import ikteach.view.webgl.driver as _d
 counted = {"frames": 0, "all": 0}
 def counting(send=player.scene.driver.send):
     def run(*args, **kwargs):
@@ -225,7 +225,7 @@ def test_running_the_cell_again_leaves_one_loop(gait: Notebook) -> None:
 
 def test_nobody_looks_no_loop_runs(gait: Notebook) -> None:
     gait.frames(5)
-    gait.kernel("None", "import ikteach.view.driver as _d; _d.PATIENCE = 0.5")
+    gait.kernel("None", "import ikteach.view.webgl.driver as _d; _d.PATIENCE = 0.5")
     gait.command("notebook:clear-all-cell-outputs")
     gait.settle("player._task.done()", True)
     gait.run_cell("player = GaitPlayer()")

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser
 
-from ikteach.view.lacking import LACKING, WIDGETS
+from ikteach.view.widgets.lacking import LACKING, WIDGETS
 from tests.browser.conftest import DRIVER, READY, Lab, Notebook, launch, open_page, pixels
 
 PICTURES, STILL = ".ikteach-pictures", ".ikteach-still"

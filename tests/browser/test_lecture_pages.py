@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, Page
 
-from ikteach.course.lecture import PAGES
+from ikteach.serve.lecture import PAGES
 from tests.browser.conftest import CANVAS, DRIVER, READY, SHOTS, SHOWN, open_page, pixels
 
 NAMES = sorted(path.stem for path in PAGES.glob("*.ipynb"))

@@ -13,10 +13,10 @@ from IPython.display import display
 from ikteach import dls, figures
 from ikteach.course import predict
 from ikteach.course.notice import Notice
-from ikteach.motion.session import Session
+from ikteach.motion.live.session import Session
 from ikteach.view import ColumnPoser, GaitPlayer, Poser
-from ikteach.view.glass import Glass
-from ikteach.view.replay import Replay
+from ikteach.view.tools.inspector import Glass
+from ikteach.view.tools.replay import Replay
 bad = {SCRIPT!r}
 formula = r"$\\frac{{1}}{{2}}$"
 tree, effectors = figures.human()

@@ -14,11 +14,11 @@ from tests.browser.conftest import READY, SHOTS, Lab, Notebook, pixels
 
 CELLS = [
     """import asyncio
-from ikteach.motion.session import Session
-from ikteach.view.glass import Glass
-from ikteach.view.keeping import Keeper
-from ikteach.view.recorder import Recorder
-from ikteach.view.replay import Replay
+from ikteach.motion.live.session import Session
+from ikteach.view.tools.inspector import Glass
+from ikteach.view.tools.files import Keeper
+from ikteach.view.tools.recorder import Recorder
+from ikteach.view.tools.replay import Replay
 session = Session(max_step=0.1)
 async def walk():
     while True:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from ikteach.view.stage import LAYERS
+from ikteach.view.stage.stage import LAYERS
 from tests.browser.conftest import CANVAS, DRIVER, READY, Lab, Notebook, pixels
 
 FRAME = f"+(document.querySelector('{DRIVER}').dataset.frame ?? -1)"
@@ -22,7 +22,7 @@ from ikteach.body import figures, forward, jacobian, locate
 from ikteach.motion import gait, step
 from ikteach.solvers.singularity import ellipsoid
 from ikteach.view import Scene
-from ikteach.view.targets import Targets
+from ikteach.view.webgl.targets import Targets
 from ipywidgets import VBox
 tree, effectors = figures.human()
 scene = Scene(tree, effectors)
@@ -93,7 +93,7 @@ def where(scene: Notebook, target: int, name: str = "scene", panel: str = "targe
     """Where the middle of a target is in the page, in pixels."""
     code = f"""
 import numpy as _np
-from ikteach.view.stage import picture_axes as _axes
+from ikteach.view.stage.stage import picture_axes as _axes
 _eye = _np.array({name}.camera.position)
 _x, _y, _z = (_np.array({panel}.positions[{target}]) - _eye) @ _axes(
     _eye - {name}.renderer.controls[0].target)

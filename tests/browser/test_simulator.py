@@ -185,7 +185,7 @@ def test_an_oscillation_is_said_and_an_error_is_told_once(reach: Notebook) -> No
     reach.kernel("None", f"{SESSION}.put([0.4, -0.2, 0.3]); player.play(); player.wake()")
     reach.settle(f"{HAND}.words.startswith('oscillates')", True)
     reach.page.wait_for_selector("table.ikteach-table >> text=oscillates", timeout=READY)
-    broken = "from dataclasses import replace\nfrom ikteach.motion.ways import WAYS\n"
+    broken = "from dataclasses import replace\nfrom ikteach.motion.reach.ways import WAYS\n"
     broken += "bad = replace(WAYS['dls'], solver=lambda J, e: J[..., 0, :] * float('nan'))\n"
     broken += f"{SESSION}.ways['dls'] = bad; {SESSION}.put([0.3, 0.4, 0.4]); player.wake()"
     reach.kernel("None", broken)

@@ -18,8 +18,8 @@ import pytest
 from playwright.sync_api import Browser, Page, Route
 
 from ikteach import __main__ as cli
-from ikteach.course import site, wheels
-from ikteach.course.opening import chapters, course_files
+from ikteach.publish import site, wheels
+from ikteach.publish.delivery import chapters, course_files
 from tests import pyodide
 from tests.browser.conftest import READY, ROOT, SHOTS, open_page
 
@@ -275,7 +275,7 @@ def test_widgets_live_and_webgl_draws(lite: Lite) -> None:
 from unittest.mock import MagicMock
 sys.modules["numpy"] = MagicMock(ndarray=type("ndarray", (), {{}}))  # pythreejs imports it
 import asyncio, ipywidgets as widgets, pythreejs as three
-from ikteach.view.status import Status
+from ikteach.view.widgets.status import Status
 
 status, slider = Status(), widgets.IntSlider(description="Turn", max=90)
 box = three.Mesh(three.BoxBufferGeometry(1, 1, 1), three.MeshBasicMaterial(color="#0072b2"))

@@ -15,7 +15,7 @@ NAME = "tabs.ipynb"  # a copy, for it is saved with its output
 FRAME = f"+document.querySelector('{DRIVER}').dataset.frame"
 WATCH = f"""
 import asyncio, pathlib
-from ikteach.view import driver
+from ikteach.view.webgl import driver
 driver.PATIENCE = 1.0
 async def watch():
     while True:

@@ -16,6 +16,8 @@ LOOPS = (
     "for task in __import__('asyncio').all_tasks(bench._act.loop) if not task.done())"
 )
 
+IN_WORDS = "__import__('ikteach.motion.live.session', fromlist=['x']).in_words"
+
 
 @pytest.fixture(scope="module")
 def bench(open_notebook: Any) -> Iterator[Notebook]:
@@ -85,7 +87,9 @@ def test_method(bench: Notebook) -> None:
         bench.settle("bench.session.method", method)
         bench.frames(2)
     open_panel(bench, "Options of the methods")
-    methods = "__import__('ikteach.motion.session', fromlist=['x']).in_words(bench.session.methods)"
+    methods = (
+        "__import__('ikteach.motion.live.session', fromlist=['x']).in_words(bench.session.methods)"
+    )
     slide(bench, "dls: damping")
     bench.settle(f"round({methods}['dls']['damping'], 3)", 1.0)
     slide(bench, "transpose: gain")
@@ -108,7 +112,9 @@ def test_method(bench: Notebook) -> None:
     bench.settle(
         "[round(bench.session.caps['dls'], 4), bench.session.caps['sdls']]", [0.7854, None]
     )
-    options = "__import__('ikteach.motion.session', fromlist=['x']).in_words(bench.session.options)"
+    options = (
+        "__import__('ikteach.motion.live.session', fromlist=['x']).in_words(bench.session.options)"
+    )
     bench.press("per_chain")
     bench.settle(f"{options}['cap']", "per_chain")
     bench.press("clip")

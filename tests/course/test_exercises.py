@@ -7,8 +7,8 @@ from typing import Any
 import nbformat
 import pytest
 
-from ikteach.course import builds
 from ikteach.course.checking import EXERCISES, check, find, judge
+from ikteach.publish import builds
 
 ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "ikteach" / "course"

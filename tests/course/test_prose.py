@@ -8,8 +8,8 @@ import pytest
 
 from ikteach import dls, figures, forward, gait, jacobian, pseudoinverse, track, transpose
 from ikteach.motion import BUSS_CAPS, clip, hold, per_chain, whole
-from ikteach.motion.experiment import arrivals, nearby
 from ikteach.solvers import SOLVERS
+from ikteach.study.experiment import arrivals, nearby
 
 ARM, HUMAN = figures.planar_arm(3), figures.human()
 CYCLE = gait.walking.at(np.linspace(0, 2 * np.pi, 34, endpoint=False))

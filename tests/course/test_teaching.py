@@ -10,17 +10,17 @@ import pandas as pd
 import pytest
 
 from ikteach import figures, gait, study, track
-from ikteach.course.collect import collect
 from ikteach.course.record import store
 from ikteach.motion import BUSS_CAPS
-from ikteach.motion.experiment import nearby
+from ikteach.publish.collect import collect
 from ikteach.study import distances
+from ikteach.study.experiment import nearby
 from ikteach.view import BendBench, ColumnPoser, GaitPlayer, Poser, Simulator, Workbench
-from ikteach.view.caps import CapPlayer
-from ikteach.view.race import EQUAL, OWN, Race
-from ikteach.view.slope import slope_bench
-from ikteach.view.spectrum import spectrum_bench
-from ikteach.view.tradeoff import tradeoff_bench
+from ikteach.view.chapters.comparison import EQUAL, OWN, Race
+from ikteach.view.chapters.dls import tradeoff_bench
+from ikteach.view.chapters.pseudoinverse import CapPlayer
+from ikteach.view.chapters.sdls import spectrum_bench
+from ikteach.view.chapters.transpose import slope_bench
 
 pytestmark = pytest.mark.usefixtures("rounding")
 TEXT = (Path(__file__).parents[2] / "TEACHING.md").read_text(encoding="utf-8")

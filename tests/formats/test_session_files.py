@@ -15,8 +15,8 @@ from numpy.testing import assert_array_equal
 from ikteach import SOLVERS, Effectors, Joint, Tree, dls, figures
 from ikteach.formats.session import load, save
 from ikteach.motion import gait
+from ikteach.motion.live.session import Session
 from ikteach.motion.mix import Mix
-from ikteach.motion.session import Session
 
 ARRAYS = [
     "tick",
@@ -244,7 +244,7 @@ KILL = """
 import os, sys
 from pathlib import Path
 from ikteach.formats.session import save
-from ikteach.motion.session import Session
+from ikteach.motion.live.session import Session
 session, left = Session(), [int(sys.argv[2])]
 for _ in range(5):
     session.tick()

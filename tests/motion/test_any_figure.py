@@ -14,10 +14,10 @@ from strategies import SEEDS, anybody
 from ikteach import SOLVERS, Effectors, Joint, Tree, dls, figures, forward, locate
 from ikteach.body.extent import extent
 from ikteach.motion import clip, gait
+from ikteach.motion.live.session import Session
 from ikteach.motion.methods import LONG, methods_of
 from ikteach.motion.mix import Mix
 from ikteach.motion.path import Path, swinging
-from ikteach.motion.session import Session
 
 ARM = figures.planar_arm(3)
 

@@ -9,8 +9,8 @@ from numpy.testing import assert_allclose
 
 from ikteach import SOLVERS, cramer, dls_following, figures, step, track
 from ikteach.motion.gait import walking
+from ikteach.motion.live.session import Session
 from ikteach.motion.mix import Each, Mix
-from ikteach.motion.session import Session
 from ikteach.solvers import (
     adjugate,
     ask,

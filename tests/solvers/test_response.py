@@ -7,9 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from ikteach import dls, figures, forward, jacobian, pseudoinverse, sdls, transpose
-from ikteach.motion.experiment import starts
 from ikteach.solvers.response import directions, factors, filtered
 from ikteach.solvers.sdls import hard
+from ikteach.study.experiment import starts
 
 TREE, EFFECTORS = figures.human()
 POSES = starts(TREE, 5, spread=0.4)[1:]

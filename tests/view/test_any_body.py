@@ -10,8 +10,8 @@ from strategies import SEEDS, anybody, poses
 
 from ikteach import Effectors, Joint, Tree, figures, forward, locate
 from ikteach.view import Scene
-from ikteach.view.filming import Film, Shot
-from ikteach.view.stage import CAMERAS, ROOM, Stage
+from ikteach.view.raster.film import Film, Shot
+from ikteach.view.stage.stage import CAMERAS, ROOM, Stage
 
 SIZE = WIDTH, HEIGHT = 640, 480
 TURN = np.array([[0.6, 0, 0.8], [0, 1, 0], [-0.8, 0, 0.6]])  # about the vertical

@@ -13,15 +13,15 @@ from strategies import SEEDS, anybody
 
 from ikteach import SOLVERS, Effectors, Joint, Tree, dls, figures, forward, locate
 from ikteach.motion.gait import walking
+from ikteach.motion.live.session import Session
 from ikteach.motion.path import Path
-from ikteach.motion.session import Session
 from ikteach.view import Poser, Scene, StillScene
-from ikteach.view.lengths import Lengths, digits_of, round_step
-from ikteach.view.player import GaitPlayer
-from ikteach.view.posing import ColumnPoser, Dial
-from ikteach.view.race import EQUAL, OWN, Race
-from ikteach.view.replay import Replay
-from ikteach.view.targets import Targets
+from ikteach.view.chapters.comparison import EQUAL, OWN, Race
+from ikteach.view.chapters.figure import ColumnPoser, Dial
+from ikteach.view.chapters.gait import GaitPlayer
+from ikteach.view.stage.lengths import Lengths, digits_of, round_step
+from ikteach.view.tools.replay import Replay
+from ikteach.view.webgl.targets import Targets
 
 
 def body(*joints, at=(1, 0, 0)):

@@ -18,28 +18,28 @@ import ikteach.view
 from ikteach import figures
 from ikteach.body.figures import Figure
 from ikteach.course import predict, quiz
-from ikteach.motion.planar import PlanarReach
-from ikteach.motion.session import Session
-from ikteach.view.ball import Ball
-from ikteach.view.bench import Bench, Shown, slider
-from ikteach.view.caps import CapPlayer
-from ikteach.view.closing import Living, living, occupant
-from ikteach.view.driver import Driver
-from ikteach.view.glass import Glass
-from ikteach.view.handles import Handles
-from ikteach.view.keeping import Keeper
-from ikteach.view.picture import Picture
-from ikteach.view.pointing import Curve, Rows
-from ikteach.view.prose import Prose
-from ikteach.view.race import Race
-from ikteach.view.recorder import Recorder
-from ikteach.view.replay import Replay
-from ikteach.view.slope import slope_bench
-from ikteach.view.spectrum import spectrum_bench
-from ikteach.view.status import Status
-from ikteach.view.strips import Strips
-from ikteach.view.targets import Targets
-from ikteach.view.tradeoff import tradeoff_bench
+from ikteach.motion.live.session import Session
+from ikteach.motion.reach.planar import PlanarReach
+from ikteach.view.chapters.comparison import Race
+from ikteach.view.chapters.dls import tradeoff_bench
+from ikteach.view.chapters.pseudoinverse import CapPlayer
+from ikteach.view.chapters.sdls import spectrum_bench
+from ikteach.view.chapters.transpose import slope_bench
+from ikteach.view.live.bench import Bench, Shown, slider
+from ikteach.view.live.strips import Strips
+from ikteach.view.tools.files import Keeper
+from ikteach.view.tools.inspector import Glass
+from ikteach.view.tools.recorder import Recorder
+from ikteach.view.tools.replay import Replay
+from ikteach.view.webgl.driver import Driver
+from ikteach.view.webgl.handles import Handles
+from ikteach.view.webgl.targets import Targets
+from ikteach.view.widgets.ball import Ball
+from ikteach.view.widgets.closing import Living, living, occupant
+from ikteach.view.widgets.picture import Picture
+from ikteach.view.widgets.pointing import Curve, Rows
+from ikteach.view.widgets.prose import Prose
+from ikteach.view.widgets.status import Status
 
 NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
 
@@ -149,7 +149,7 @@ def all_that_live() -> set[str]:
     """Every class of `view` and `course` that lives in a cell, and that no other is made of."""
     for room in (ikteach.view, ikteach.course):
         for module in pkgutil.walk_packages(room.__path__, f"{room.__name__}."):
-            if not module.name.startswith(("ikteach.course.lecture", "ikteach.course.solutions")):
+            if not module.name.startswith(("ikteach.serve.lecture", "ikteach.course.solutions")):
                 importlib.import_module(module.name)
     found, waiting = set[str](), Living.__subclasses__()
     while waiting:
@@ -172,7 +172,7 @@ def test_none_is_forgotten() -> None:
     assert len(imported) > 10
     assert imported <= known
     # Of Simulator; of predict and quiz.
-    within = {"ikteach.view.simulator.CursorScene", "ikteach.course.widget.Question"}
+    within = {"ikteach.view.chapters.reach.CursorScene", "ikteach.course.widget.Question"}
     assert all_that_live() - within <= known
 
 

@@ -11,17 +11,17 @@ import pytest
 
 from ikteach import figures
 from ikteach.course import predict, quiz
-from ikteach.motion.planar import PlanarReach
-from ikteach.motion.session import Session
+from ikteach.motion.live.session import Session
+from ikteach.motion.reach.planar import PlanarReach
 from ikteach.view import BendBench, ColumnPoser, Poser, Scene, Simulator, StillScene, Workbench
-from ikteach.view.bench import Bench, Shown, slider
-from ikteach.view.caps import CapPlayer
-from ikteach.view.closing import living
-from ikteach.view.glass import Glass
-from ikteach.view.keeping import Keeper
-from ikteach.view.recorder import Recorder
-from ikteach.view.replay import Replay
-from ikteach.view.targets import Targets
+from ikteach.view.chapters.pseudoinverse import CapPlayer
+from ikteach.view.live.bench import Bench, Shown, slider
+from ikteach.view.tools.files import Keeper
+from ikteach.view.tools.inspector import Glass
+from ikteach.view.tools.recorder import Recorder
+from ikteach.view.tools.replay import Replay
+from ikteach.view.webgl.targets import Targets
+from ikteach.view.widgets.closing import living
 
 ARM, HUMAN = figures.planar_arm(3), figures.human()
 NAN = float("nan")
@@ -95,8 +95,16 @@ REFUSED: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: Simulator(3), TypeError, "session must be a Reach or a PlanarReach, not 3"),
     (lambda: Simulator(Session()), TypeError, "session must be a Reach or a PlanarReach"),
     (lambda: Simulator(PlanarReach(), parts=2), TypeError, "parts: options are for a session that"),
-    (lambda: Simulator(parts="x"), ValueError, "the number of parts must be 0 or more, and finite, not 'x'"),
-    (lambda: Simulator(max_step=NAN), ValueError, "max_step must be 0 or more, and finite, not nan"),
+    (
+        lambda: Simulator(parts="x"),
+        ValueError,
+        "the number of parts must be 0 or more, and finite, not 'x'",
+    ),
+    (
+        lambda: Simulator(max_step=NAN),
+        ValueError,
+        "max_step must be 0 or more, and finite, not nan",
+    ),
     (lambda: CapPlayer("x"), ValueError, "degrees must be a number, from 0.5 to 45, not 'x'"),
     (lambda: CapPlayer(NAN), ValueError, "degrees must be a number, from 0.5 to 45, not nan"),
     (lambda: CapPlayer(x_hand=99), ValueError, "x_hand must be a number, from 0.3 to 2, not 99"),

@@ -9,8 +9,8 @@ import tracemalloc
 import pytest
 from ipywidgets.widgets.widget import _instances
 
-from ikteach.view import live
-from ikteach.view.workbench import Workbench
+from ikteach.view.chapters.workbench import Workbench
+from ikteach.view.live import live
 
 KEEP, WARM = 40, 100  # ticks: in the record, and until all that is made once has been made
 TICKS = 20_000 if os.environ.get("IKTEACH_FULL") else 150
@@ -92,7 +92,7 @@ def test_quit_ends_the_loop(played):
 
 
 def test_the_loop_ends_when_nobody_looks_and_goes_on_when_somebody_does(played, monkeypatch):
-    monkeypatch.setattr("ikteach.view.driver.PATIENCE", 0.05)
+    monkeypatch.setattr("ikteach.view.webgl.driver.PATIENCE", 0.05)
 
     async def run(bench):
         await reach(bench, 3)

@@ -23,19 +23,19 @@ from ikteach.course.notice import Notice, paragraph
 from ikteach.course.questions import Revealed
 from ikteach.course.widget import Question
 from ikteach.markup import LONGEST, Markup, as_label, escaped, plain
-from ikteach.motion.session import Session
+from ikteach.motion.live.session import Session
 from ikteach.solvers import dls
 from ikteach.view import ColumnPoser, GaitPlayer, Poser, Scene, StillScene
 from ikteach.view.charts import bars, lines
-from ikteach.view.closing import living
-from ikteach.view.glass import Glass
-from ikteach.view.glass_pages import PAGES
 from ikteach.view.heat import heat
 from ikteach.view.plots import phase_plot
-from ikteach.view.prose import Prose, grid, table
-from ikteach.view.recorder import Recorder
-from ikteach.view.replay import Replay
-from ikteach.view.targets import Targets
+from ikteach.view.tools.inspector import Glass
+from ikteach.view.tools.inspector_pages import PAGES
+from ikteach.view.tools.recorder import Recorder
+from ikteach.view.tools.replay import Replay
+from ikteach.view.webgl.targets import Targets
+from ikteach.view.widgets.closing import living
+from ikteach.view.widgets.prose import Prose, grid, table
 
 PACKAGE = Path(ikteach.__file__).parent
 SCRIPT = '<img src=x onerror="window.pwned=1">'

@@ -8,9 +8,9 @@ import numpy as np
 from ikteach.body import figures
 from ikteach.course.checking import NotYetError, WrongError, exercise, expect
 from ikteach.motion import gait, track
-from ikteach.motion.experiment import nearby
 from ikteach.motion.mix import Mix
 from ikteach.solvers import SOLVERS
+from ikteach.study.experiment import nearby
 
 FEET, SHAKE = 0.002, 3.0  # [m] and [degrees per tick²]: what no single method keeps to at once
 FRAMES, SETTLING = 120, 30

@@ -4,7 +4,7 @@ import numpy as np
 
 from ikteach.body import forward, jacobian, locate
 from ikteach.course.checking import Answer, exercise, expect
-from ikteach.motion.packages import Body
+from ikteach.motion.reach.packages import Body
 
 LOW, HIGH = np.radians([-30.0, 60.0])
 

@@ -1,6 +1,6 @@
 """Voilà's pages on this server look as those of `python -m ikteach lecture` do."""
 
-from ikteach.course.lecture.server import SETTINGS
+from ikteach.serve.lecture.server import SETTINGS
 
 
 def own_mathjax(page, **_):

@@ -1,0 +1,1 @@
+"""A session that is played: targets, poses and what happened, tick by tick."""

@@ -1,0 +1,165 @@
+"""The builds of the course: for students, for instructors, and as pages to read offline.
+
+The notebooks in the clone are the student build: they hold no solutions. The instructor build puts
+after each exercise its solution, folded, from `ikteach.course.solutions`. The pages are the student
+build, run, with still pictures in place of live ones and formulas as MathML: they ask nothing of
+any network.
+"""
+
+import ast
+import copy
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from ikteach.publish.delivery import chapters, course_files, deliver, find_course, told
+from ikteach.publish.parser import Parser
+
+MARK = re.compile(r"^# %% (\S+)\n", re.MULTILINE)
+
+Notebook = Any  # of nbformat, which is typed as Any
+
+
+def main(package: Path, argv: list[str]) -> int:
+    """`python -m ikteach build student|instructor|html FOLDER`; the exit code."""
+    parser = Parser(
+        prog="python -m ikteach build",
+        description="Make a build of the course in FOLDER. A file there that has been changed "
+        "since it was made is never overwritten.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("build", choices=BUILDS, help="notebooks without or with solutions; pages")
+    parser.add_argument("folder", metavar="FOLDER", type=Path)
+    options = parser.parse_args(argv)
+    notebooks = find_course(package).notebooks
+    folder = options.folder.expanduser().resolve()
+    if folder.is_relative_to(notebooks.resolve()):
+        return _refuse(f"{folder} is among the notebooks themselves; name another folder.")
+    with tempfile.TemporaryDirectory() as made:
+        try:
+            BUILDS[options.build](notebooks, Path(made))
+        except ModuleNotFoundError as error:
+            return _refuse(f"{error.name} is not installed: pip install 'ikteach[html]'")
+        except LookupError as error:
+            return _refuse(str(error))
+        print(*told(deliver(Path(made), folder), folder), sep="\n")
+    return 0
+
+
+def _refuse(sentence: str) -> int:
+    print(sentence, file=sys.stderr)
+    return 1
+
+
+def student(notebooks: Path, folder: Path) -> None:
+    """The notebooks as they are, without outputs, and the files that they use."""
+    _make(notebooks, folder, lambda notebook: notebook)
+
+
+def instructor(notebooks: Path, folder: Path) -> None:
+    """The notebooks with solutions folded in; LookupError where one is missing."""
+    _make(notebooks, folder, with_solutions)
+
+
+def pages(notebooks: Path, folder: Path) -> None:
+    """The course to read: a page a chapter, and an index."""
+    from ikteach.publish import pages
+
+    titles = chapters(notebooks)
+    _make(notebooks, folder, lambda notebook: notebook)
+    for name in titles:
+        place = folder / name
+        place.with_suffix(".html").write_text(pages.page(place, titles), encoding="utf-8")
+    (folder / "index.html").write_text(pages.index(titles), encoding="utf-8")
+    for path in folder.rglob("*.ipynb"):
+        path.unlink()
+
+
+BUILDS = {"student": student, "instructor": instructor, "html": pages}
+
+
+def _make(notebooks: Path, folder: Path, change: Callable[[Notebook], Notebook]) -> None:
+    import nbformat
+
+    for name in course_files(notebooks):
+        place = folder / name
+        place.parent.mkdir(parents=True, exist_ok=True)
+        if place.suffix != ".ipynb":
+            shutil.copyfile(notebooks / name, place)
+            continue
+        notebook = change(clean(nbformat.read(notebooks / name, as_version=4)))
+        nbformat.write(notebook, place)
+
+
+def clean(notebook: Notebook) -> Notebook:
+    """A copy without outputs, and without cells that are tagged `solution`."""
+    notebook = copy.deepcopy(notebook)
+    notebook.cells = [c for c in notebook.cells if "solution" not in c.metadata.get("tags", [])]
+    for cell in notebook.cells:
+        if cell.cell_type == "code":
+            cell.outputs, cell.execution_count = [], None
+    return notebook
+
+
+def with_solutions(notebook: Notebook) -> Notebook:
+    """A copy that has after each cell that checks an exercise its solution, folded."""
+    import nbformat
+
+    notebook = copy.deepcopy(notebook)
+    folded = {"tags": ["solution", "hide-input"], "jupyter": {"source_hidden": True}}
+    cells = []
+    for cell in notebook.cells:
+        cells.append(cell)
+        for key, name in checks(cell) if cell.cell_type == "code" else []:
+            source = f'{solution(key)}\n\n\ncheck("{key}", {name})'
+            name = re.sub(r"\W", "-", f"solution-{key}")
+            cells.append(nbformat.v4.new_code_cell(source, id=name, metadata=folded))
+    notebook.cells = cells
+    return notebook
+
+
+def checks(cell: Notebook) -> Iterator[tuple[str, str]]:
+    """(key, name of the answer) of each `check("key", name)` in a cell."""
+    for node in ast.walk(ast.parse(cell.source)):
+        if not (isinstance(node, ast.Call) and getattr(node.func, "id", "") == "check"):
+            continue
+        match node.args:
+            case [ast.Constant(value=str(key)), answer]:
+                yield key, ast.unparse(answer)
+
+
+def solution(key: str) -> str:
+    """The source of the solution of exercise `key`; LookupError if there is none."""
+    chapter = Path(__file__).parents[1] / "course" / "solutions" / f"ch{key.partition('.')[0]}.py"
+    if not chapter.exists():
+        raise LookupError(
+            f"There are no solutions for {key!r} here: {chapter.name} is missing. They are in the "
+            "clone only, and not in the installed package."
+        )
+    found = solutions(chapter.read_text(encoding="utf-8"))
+    if key not in found:
+        raise LookupError(f"{chapter.name} has no solution for {key!r}.")
+    return found[key]
+
+
+def solutions(text: str) -> dict[str, str]:
+    """Key -> source of each solution in a module's text."""
+    _, *parts = MARK.split(text)
+    return {key: source.strip() for key, source in zip(parts[::2], parts[1::2], strict=True)}
+
+
+def answer_of(key: str) -> Any:
+    """The solution's answer: what its last statement binds, in a namespace of its own."""
+    source = solution(key)
+    chapter = Path(__file__).parents[1] / "course" / "solutions" / f"ch{key.partition('.')[0]}.py"
+    preamble = MARK.split(chapter.read_text(encoding="utf-8"))[0]
+    names: dict[str, Any] = {}
+    exec(compile(f"{preamble}\n{source}", str(chapter), "exec"), names)
+    match ast.parse(source).body[-1]:
+        case ast.FunctionDef(name=name) | ast.Assign(targets=[ast.Name(id=name)]):
+            return names[name]
+    raise LookupError(f"the last statement of the solution of {key!r} binds no answer")

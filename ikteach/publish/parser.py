@@ -1,0 +1,31 @@
+"""The command line of our commands: misspelt words are answered with what may be meant."""
+
+import argparse
+import difflib
+from collections.abc import Iterable
+from typing import Any
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that asks, of an option that it does not know, whether another was meant."""
+
+    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Read the command line, or end with a sentence and exit code 2."""
+        options, unknown = self.parse_known_args(args, namespace)
+        if unknown:
+            known = [name for action in self._actions for name in action.option_strings]
+            self.error(f"there is no place for {shown(unknown[0])}{meant(unknown[0], known)}")
+        return options
+
+
+def meant(word: str, known: Iterable[str]) -> str:
+    """Ask for the known word that is most like another, or say nothing."""
+    plain = {name.lstrip("-"): name for name in known}
+    word = word.partition("=")[0].lstrip("-").lower()
+    close = difflib.get_close_matches(word, plain, n=1, cutoff=0.75)
+    return f"; did you mean {plain[close[0]]}?" if close else ""
+
+
+def shown(word: str) -> str:
+    """Quote a word of the command line, shortened."""
+    return repr(word if len(word) <= 60 else f"{word[:59]}…")

@@ -1,0 +1,93 @@
+"""Live figures as plain web pages for a lecture: `python -m ikteach lecture`.
+
+The pages are the notebooks in `pages`, a figure and a few words each. Voilà shows them without
+code; whoever opens one has a kernel of their own, which ends when the page is closed.
+"""
+
+import argparse
+import os
+import socket
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ikteach.publish.delivery import deliver, told
+from ikteach.publish.parser import Parser
+from ikteach.serve import ports
+
+if TYPE_CHECKING:
+    from ikteach.view.chapters.workbench import Workbench
+
+PAGES = Path(__file__).parent / "pages"
+FIRST = "workbench.ipynb"
+FOLDER = Path("ikteach-lecture")
+ROOM = "IKTEACH_ROOM"  # set for the kernels when others than the lecturer may open pages
+
+
+def parse(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
+    """Our options, and those for Voilà: what follows `--`."""
+    parser = Parser(
+        prog="python -m ikteach lecture",
+        usage="%(prog)s [FOLDER] [--room] [--no-browser] [--port N] [-- VOILÀ OPTIONS]",
+        description="Show the workbench, the simulator, the walk and the race as web pages without "
+        "code.",
+        allow_abbrev=False,
+    )
+    parser.add_argument(
+        "folder",
+        metavar="FOLDER",
+        nargs="?",
+        type=Path,
+        default=FOLDER,
+        help="copy the pages there and show the copy; a page that you have changed is never "
+        "overwritten, and movies and sessions go there too (default: ./%(default)s)",
+    )
+    parser.add_argument(
+        "--room",
+        action="store_true",
+        help="others in this network may open the pages, with the address that is printed",
+    )
+    return ports.parse(parser, argv)
+
+
+def show(options: argparse.Namespace, extra: list[str]) -> int:
+    """Copy the pages, and serve them until Ctrl-C."""
+    try:
+        from ikteach.serve.lecture.server import Lecture
+    except ImportError as error:
+        told_of = f"Voilà is older than it must be, or a part of it is missing ({error})."
+        print(f"{told_of} Mend it with: pip install --upgrade 'ikteach[lecture]'", file=sys.stderr)
+        return 1
+    folder = options.folder.expanduser().resolve()
+    print(*told(deliver(PAGES, folder), folder), sep="\n")
+    os.environ.pop(ROOM, None)
+    if options.room:
+        os.environ[ROOM] = "1"
+    browse = not options.no_browser
+    try:
+        lecture = Lecture.of(folder, FIRST, options.port, room=options.room, browse=browse)
+        lecture.initialize(extra)
+        lecture.start()
+    except KeyboardInterrupt:  # before it serves: then it hears of it itself
+        return 130
+    return 0
+
+
+def workbench() -> "Workbench":
+    """The workbench of a page; where others operate it, without the panel that writes files."""
+    from ikteach.view.chapters.workbench import Workbench
+
+    bench = Workbench()
+    if os.environ.get(ROOM):
+        bench.keep_no_files()
+    return bench
+
+
+def own_address() -> str:
+    """The address of this machine in its network; nothing is sent to find it."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(("192.0.2.1", 9))  # an address that is nobody's: a route is looked up
+            return str(probe.getsockname()[0])
+        except OSError:
+            return socket.gethostname()

@@ -1,0 +1,109 @@
+"""Chapter 3's bench: how far to go downhill, on the error parabola and on the arm."""
+
+from functools import partial
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ikteach.arrays import Array
+from ikteach.body import forward, locate
+from ikteach.body.figures import planar_arm
+from ikteach.motion import ignore, step
+from ikteach.solvers import transpose
+from ikteach.study.experiment import downhill
+from ikteach.view.live.bench import Bench, Canvas, Shown, slider
+from ikteach.view.stage.skin import BLUE, GREEN, ORANGE, RED
+from ikteach.view.widgets.closing import making
+
+START = np.array([0.9, -0.7, -0.6])  # [rad] a bent arm
+GAINS = np.linspace(0, 3, 121)
+TINY = 1e-30  # [m²] keeps 0 / 0 away where the hand is on the target
+
+
+class Slope:
+    """The arm in its pose, and the curve that the next step goes down."""
+
+    def __init__(self) -> None:
+        self.arm = planar_arm(3)
+        self.theta = START
+        self.steps = 0
+        self._asked = (1.0, np.zeros((1, 3)))
+        figure = Figure(figsize=(9.6, 3.9), dpi=90)
+        left, right = figure.subplots(1, 2)
+        figure.subplots_adjust(left=0.07, right=0.99, bottom=0.13, top=0.91, wspace=0.2)
+        left.set(xlim=(-3.3, 3.3), ylim=(-2.1, 3.3), aspect="equal", xlabel="x [m]", ylabel="y [m]")
+        left.set_title("the arm, before and after one step")
+        left.grid(alpha=0.3)
+        (self._before,) = left.plot([], [], "o--", color="0.55", lw=2, label="before")
+        (self._after,) = left.plot([], [], "o-", color=BLUE, lw=4, label="after")
+        (self._target,) = left.plot([], [], "X", color=RED, ms=12, label="target")
+        left.legend(loc="lower left", fontsize=8)
+        right.set(xlim=(0, 3), ylim=(0, 2.5), xlabel="gain: α as a share of the best α")
+        right.set_ylabel("squared error after the step, share of now")
+        right.set_title("the error parabola")
+        right.grid(alpha=0.3)
+        right.axhline(1, color="0.3", lw=1)
+        (self._promised,) = right.plot([], [], color=ORANGE, lw=2, label="promised: ‖e − αJJᵀe‖²")
+        (self._actual,) = right.plot([], [], "--", color=BLUE, lw=2, label="actual")
+        (self._best,) = right.plot([], [], "o", color=GREEN, ms=9, label="best α")
+        (self._half,) = right.plot([], [], "s", color="0.4", ms=8, label="half of it (thesis)")
+        (self._chosen,) = right.plot([], [], "D", color=RED, ms=9, label="chosen")
+        right.legend(loc="upper center", fontsize=8)
+        self._canvas = Canvas(figure, [*left.lines, *right.lines[1:]])
+
+    def show(self, gain: float, x: float, y: float) -> Shown:
+        """The step with this gain towards a target at (x, y) [m]."""
+        self._asked = gain, np.array([[x, y, 0.0]])
+        targets = self._asked[1]
+        curve = downhill(*self.arm, self.theta, targets, GAINS)
+        marks = downhill(*self.arm, self.theta, targets, [0.0, 0.5, 1.0, gain])
+        after = self._stepped()
+        for line, pose in ((self._before, self.theta), (self._after, after)):
+            line.set_data(*self._outline(pose))
+        self._target.set_data([x], [y])
+        unit = max(float(marks.actual[0]), TINY)
+        self._promised.set_data(GAINS, curve.promised / unit)
+        self._actual.set_data(GAINS, curve.actual / unit)
+        self._half.set_data([0.5], [marks.promised[1] / unit])
+        self._best.set_data([1.0], [marks.promised[2] / unit])
+        self._chosen.set_data([gain], [marks.actual[3] / unit])
+        now, left = np.sqrt([marks.actual[0], marks.actual[3]])
+        words = (
+            f"A planar arm after {self.steps} steps, target at ({x:.2f}, {y:.2f}) m. "
+            f"Distance now {now:.3f} m. A step with {gain:.2f} of the best α promises "
+            f"{np.sqrt(marks.promised[3]):.3f} m and leaves {left:.3f} m."
+        )
+        return Shown(self._canvas.png(), words, words)
+
+    def take(self) -> None:
+        """Take the step that is shown."""
+        self.theta, self.steps = self._stepped(), self.steps + 1
+
+    def reset(self) -> None:
+        """Back to the bent arm."""
+        self.theta, self.steps = START, 0
+
+    def _stepped(self) -> Array:
+        gain, targets = self._asked
+        tree, effectors = self.arm
+        solver = partial(transpose, gain=gain)
+        return step(tree, self.theta, effectors, targets, solver, limits=ignore).theta
+
+    def _outline(self, theta: Array) -> Array:
+        """x and y of joints and hand, (2, 4) [m]."""
+        frames = forward(self.arm.tree, theta)
+        points = np.concatenate([frames.positions, locate(frames, self.arm.effectors)])
+        return points[:, :2].T
+
+
+@making()
+def slope_bench() -> Bench:
+    """The bench of chapter 3. Sliders: the gain, and where the target is."""
+    slope = Slope()
+    controls = {
+        "gain": slider("gain (share of best α)", 0.5, 0.0, 3.0, 0.05),
+        "x": slider("target x [m]", 0.5, -2.5, 2.5, 0.05),
+        "y": slider("target y [m]", 2.2, -1.5, 2.5, 0.05),
+    }
+    buttons = {"Take the step": slope.take, "Start again": slope.reset}
+    return Bench(slope.show, controls, slot="slope", buttons=buttons)

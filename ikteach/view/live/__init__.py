@@ -1,0 +1,1 @@
+"""Figures that run, and pictures that answer controls."""

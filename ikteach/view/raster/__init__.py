@@ -1,0 +1,1 @@
+"""The renderer in the kernel: still pictures and movies."""

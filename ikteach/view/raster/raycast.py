@@ -1,0 +1,196 @@
+"""Solid pictures without a graphics card: rays against quadrics, in numpy.
+
+Every solid is a surface XᵀQX = 0 with X = (x, y, z, 1), kept where some coordinates w·X lie within
+bounds: an ellipsoid, a cone cut at both ends, the six faces of a box. A frame T takes Q to
+T⁻ᵀ Q T⁻¹ and w to w T⁻¹; where a ray t·d from the eye meets the surface is a quadratic equation.
+"""
+
+from collections.abc import Sequence
+from math import radians, tan
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ikteach.arrays import Array, ArrayLike
+from ikteach.body.rotation import sticks
+from ikteach.view.stage.skin import Ball, Part
+from ikteach.view.stage.stage import FIELD, picture_axes
+
+AMBIENT, DIFFUSE = 0.5, 0.62
+LIGHT = np.array([2.0, 4.0, 3.0]) / np.sqrt(29)  # towards it, in the world
+NEAR = 0.05  # [units of the eye]
+ANYWHERE = 1e9
+
+
+class Solid(NamedTuple):
+    """A quadric in the frame of joint `frame`, and two balls that together hold all of it.
+
+    Q (4, 4), W (c, 4) coordinates that must lie within ±bounds (c,) of 0, balls (2, 4): x, y, z, r
+    """
+
+    frame: int
+    Q: Array
+    W: Array
+    bounds: Array
+    balls: Array
+    colour: Array
+
+
+def solids(part: Part, frame: int) -> list[Solid]:
+    """What a part of a skin is made of."""
+    if isinstance(part, Ball):
+        return [ellipsoid(part.centre, part.radii, part.colour, frame)]
+    start, end = np.asarray(part.start, dtype=float), np.asarray(part.end, dtype=float)
+    tips = [
+        ellipsoid(at, (radius,) * 3, part.colour, frame)
+        for at, radius in ((start, part.thick), (end, part.thin))
+    ]
+    return [rod(start, end, part.thick, part.thin, part.colour, frame), *tips]
+
+
+def ellipsoid(centre: ArrayLike, radii: ArrayLike, colour: str, frame: int) -> Solid:
+    """((x − c)/r)² = 1 in each coordinate, summed."""
+    c, r = np.asarray(centre, dtype=float), np.asarray(radii, dtype=float)
+    to_unit = np.diag([*(1 / r), 1.0])
+    to_unit[:3, 3] = -c / r
+    Q = to_unit.T @ np.diag([1.0, 1, 1, -1]) @ to_unit
+    ball = [*c, r.max()]
+    return Solid(frame, Q, np.zeros((2, 4)), np.full(2, ANYWHERE), np.array([ball, ball]),
+                 rgb(colour))  # fmt: skip
+
+
+def rod(start: Array, end: Array, thick: float, thin: float, colour: str, frame: int) -> Solid:
+    """The cone x² + z² = (thick + (thin − thick) y)² for y from 0 to 1 along start → end."""
+    to_rod = np.linalg.inv(square(sticks(start, end)))
+    local = np.zeros((4, 4))
+    local[0, 0] = local[2, 2] = 1
+    slope = np.array([0, thin - thick, 0, thick])
+    Q = to_rod.T @ (local - np.outer(slope, slope)) @ to_rod
+    W = np.zeros((2, 4))
+    W[0] = [0, 1, 0, -0.5] @ to_rod
+    balls = np.array([[*start, thick], [*end, thin]])
+    return Solid(frame, Q, W, np.array([0.5, ANYWHERE]), balls, rgb(colour))
+
+
+def box(half: float, colour: str, frame: int) -> list[Solid]:
+    """A cube of 2 · half: three pairs of faces, x² = half², each cut by the other two."""
+    faces = []
+    for axis in range(3):
+        Q = np.diag([0.0, 0, 0, -half * half])
+        Q[axis, axis] = 1
+        W = np.eye(4)[[other for other in range(3) if other != axis]]
+        ball = [0, 0, 0, half * np.sqrt(3)]
+        faces.append(Solid(frame, Q, W, np.full(2, half), np.array([ball, ball]), rgb(colour)))
+    return faces
+
+
+class Eye:
+    """A camera at `position` (3,) that looks at `at` (3,), with y upwards in the picture.
+
+    size   (width, height) [pixels]
+    field  the angle that the shorter side of the picture covers [degrees]
+    unit   what it measures in [m]: about the size of what it looks at
+    """
+
+    def __init__(
+        self, position: ArrayLike, at: ArrayLike, size: tuple[int, int], field: float = FIELD,
+        unit: float = 1.0,
+    ) -> None:  # fmt: skip
+        eye = np.asarray(position, dtype=float)
+        self.axes = picture_axes(np.subtract(eye, at)).T  # x right, y up, z towards the eye
+        self.view = np.eye(4)  # from the world to these, in units from the eye
+        self.view[:3, :3] = self.axes / unit
+        self.view[:3, 3] = -self.view[:3, :3] @ eye
+        self.size = width, height = size
+        self.pixel = 2 * tan(radians(field / 2)) / min(height, width)  # at a distance of 1
+        self.x = ((np.arange(width) + 0.5 - width / 2) * self.pixel).astype("f4")
+        self.y = ((height / 2 - 0.5 - np.arange(height)) * self.pixel).astype("f4")
+
+    def project(self, points: ArrayLike) -> tuple[Array, Array]:
+        """Pixels (..., 2) of points (..., 3), and how far in front they are (...) [units]."""
+        seen = np.asarray(points, dtype=float) @ self.view[:3, :3].T + self.view[:3, 3]
+        away = -seen[..., 2]
+        flat = seen[..., :2] / np.maximum(away, NEAR)[..., None] / self.pixel
+        return flat * [1, -1] + np.array(self.size) / 2, away
+
+
+def draw(pixels: npt.NDArray[np.uint8], eye: Eye, parts: Sequence[Solid], frames: Array) -> None:
+    """Draw the solids into pixels (height, width, 3), each in its frame (4, 4) of `frames`."""
+    nearness = np.zeros(pixels.shape[:2], dtype="f4")  # 1/t, so that 0 is infinitely far
+    T = eye.view @ frames[[part.frame for part in parts]]
+    inverse = np.linalg.inv(T)
+    Q = inverse.mT @ np.array([part.Q for part in parts]) @ inverse
+    W = np.array([part.W for part in parts]) @ inverse
+    balls = np.array([part.balls for part in parts])
+    centres = np.einsum("nij,nbj->nbi", T[:, :3, :3], balls[..., :3]) + T[:, None, :3, 3]
+    stretch = np.linalg.norm(T[:, :3, :3], axis=1).max(axis=-1)
+    windows = _windows(eye, centres, balls[..., 3] * stretch[:, None])
+    light = (eye.axes @ LIGHT).astype("f4")
+    Q, W = Q.astype("f4"), W.astype("f4")
+    for i, part in enumerate(parts):
+        _trace(pixels, nearness, eye, windows[i], Q[i], W[i], part, light)
+
+
+def _windows(eye: Eye, centres: Array, radii: Array) -> Any:
+    """The pixels (n, 4) left, right, top, bottom that the balls (n, 2) can cover."""
+    x, y, away = centres[..., 0], centres[..., 1], -centres[..., 2]
+    near = np.maximum(away - radii, NEAR)
+    far = away + radii
+
+    def reach(at: Array, side: int) -> Array:
+        edge = at + side * radii
+        ends = edge / near, edge / far
+        return np.maximum(*ends) if side > 0 else np.minimum(*ends)
+
+    width, height = eye.size
+    left = (reach(x, -1).min(axis=-1) / eye.pixel + width / 2).clip(0, width)
+    right = (reach(x, 1).max(axis=-1) / eye.pixel + width / 2 + 1).clip(0, width)
+    top = (height / 2 - reach(y, 1).max(axis=-1) / eye.pixel).clip(0, height)
+    bottom = (height / 2 - reach(y, -1).min(axis=-1) / eye.pixel + 1).clip(0, height)
+    return np.stack([left, right, top, bottom], axis=-1).astype(int)
+
+
+def _trace(
+    pixels: npt.NDArray[np.uint8], nearness: Any, eye: Eye, window: Any, Q: Any, W: Any,
+    part: Solid, light: Any,
+) -> None:  # fmt: skip
+    left, right, top, bottom = window
+    if left >= right or top >= bottom:
+        return
+    x, y = eye.x[left:right], eye.y[top:bottom, None]
+    # At the point t (x, y, −1): A t² + 2 B t + C = 0.
+    A = (Q[0, 0] * x - 2 * Q[0, 2]) * x + ((Q[1, 1] * y - 2 * Q[1, 2]) * y + Q[2, 2])
+    A += (2 * Q[0, 1] * x) * y
+    B = (Q[0, 3] * x) + (Q[1, 3] * y - Q[2, 3])
+    D = B * B - A * Q[3, 3]
+    rows, columns = np.nonzero(D > 0)
+    if not len(rows):
+        return
+    A, B, D = A[rows, columns], B[rows, columns], D[rows, columns]
+    t = Q[3, 3] / (np.sqrt(D) - B)  # the nearer of the two; no division by A, which may be 0
+    x, y = x[columns], y[rows, 0]
+    seen = t > NEAR
+    for w, bound in zip(W, part.bounds, strict=True):
+        if bound < ANYWHERE:
+            seen &= abs((w[0] * x + w[1] * y - w[2]) * t + w[3]) <= bound
+    rows, columns = rows + top, columns + left
+    seen &= 1 / t > nearness[rows, columns]
+    rows, columns, t, x, y = rows[seen], columns[seen], t[seen], x[seen], y[seen]
+    nearness[rows, columns] = 1 / t
+    point = np.stack([x * t, y * t, -t, np.ones_like(t)])
+    normal = Q[:3] @ point
+    facing = (light @ normal) / np.sqrt((normal * normal).sum(axis=0))
+    shade = AMBIENT + DIFFUSE * np.maximum(facing, 0)
+    pixels[rows, columns] = np.minimum(part.colour * shade[:, None], 255)
+
+
+def square(matrices: Array) -> Array:
+    """[R | p] (..., 3, 4) with the last row 0 0 0 1 put under it."""
+    last = np.broadcast_to([0.0, 0, 0, 1], (*matrices.shape[:-2], 1, 4))
+    return np.concatenate([matrices, last], axis=-2)
+
+
+def rgb(colour: str) -> Array:
+    """The three numbers of "#rrggbb", 0 to 255."""
+    return np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)], dtype="f4")

@@ -1,0 +1,1 @@
+"""What is drawn: figures, their skin and marks, before any renderer."""

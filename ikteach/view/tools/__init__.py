@@ -1,0 +1,1 @@
+"""Panels over a session: record, replay, save, inspect."""

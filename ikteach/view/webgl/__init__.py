@@ -1,0 +1,1 @@
+"""The renderer in the page: pythreejs, and the driver that moves it."""

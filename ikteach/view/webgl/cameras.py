@@ -1,0 +1,136 @@
+"""Where one looks from: the named sides, free turning, perspective and parallel projection."""
+
+from collections.abc import Callable
+from math import atan2, cos, degrees, hypot, radians, sin, tan
+
+import numpy as np
+import pythreejs as three
+
+from ikteach.arrays import Array, ArrayLike
+from ikteach.view.stage.stage import FIELD, Stage, picture_axes
+
+
+class Cameras:
+    """A perspective and a parallel camera that look at the same thing; one of them is used.
+
+    renderer  is given the camera and its OrbitControls
+    aspect    width over height of the picture
+    """
+
+    def __init__(self, renderer: three.Renderer, stage: Stage, aspect: float) -> None:
+        self.renderer, self._stage, self._aspect = renderer, stage, aspect
+        # Near, far, and how close one may come, all as shares of where the named cameras are.
+        self._usual = float(np.linalg.norm(stage.eye(stage.side, aspect) - stage.extent.centre))
+        self._far = 20 * self._usual
+        self.perspective: three.PerspectiveCamera = renderer.camera
+        self.perspective.near, self.perspective.far = self._usual / 60, self._far
+        self._turning = {self.perspective: renderer.controls[0]}
+        self._bound(renderer.controls[0])
+        self.parallel: three.OrthographicCamera | None = None
+        self._tell: list[Callable[[], None]] = []
+        self._watch(self.perspective)
+
+    @property
+    def current(self) -> three.Camera:
+        """The camera in use."""
+        return self.renderer.camera
+
+    @property
+    def orthographic(self) -> bool:
+        """Whether the projection is parallel; may be set."""
+        return self.current is self.parallel
+
+    @orthographic.setter
+    def orthographic(self, on: bool) -> None:
+        if on == self.orthographic:
+            return
+        before = self.current
+        if on and self.parallel is None:
+            self.parallel = three.OrthographicCamera(
+                -1, 1, 1, -1, near=-self._far, far=self._far, position=before.position,
+                quaternion=before.quaternion,
+            )  # fmt: skip
+            self._turning[self.parallel] = three.OrbitControls(controlling=self.parallel)
+            self._bound(self._turning[self.parallel])
+            self._watch(self.parallel)
+            # The scene listens to what is in it, so that a turned camera has it drawn again.
+            scene = self.renderer.scene
+            scene.children = [*scene.children, self.parallel]
+        camera = self.parallel if on else self.perspective
+        target = self._turning[before].target
+        self.renderer.camera = camera
+        self.renderer.controls = [self._turning[camera]]
+        self.put(before.position, target)
+
+    def look_from(self, side: str) -> None:
+        """Put the camera to one of the named sides; LookupError for an unknown one."""
+        self.put(self._stage.eye(side, self._aspect), self._stage.extent.centre)
+
+    def turn(self, azimuth: float, elevation: float, distance: float | None = None) -> None:
+        """Look from so many degrees to the left of the front and above the floor."""
+        a, e = radians(azimuth), radians(min(max(elevation, -89.0), 89.0))
+        r = self.distance if distance is None else distance
+        target = np.asarray(self._turning[self.current].target)
+        away = r * np.array([sin(a) * cos(e), sin(e), cos(a) * cos(e)])
+        self.put(target + away, target)
+
+    def on_turn(self, tell: Callable[[], None]) -> None:
+        """Call tell() whenever the camera has been turned: with the mouse, by keys, by `turn`."""
+        self._tell.append(tell)
+
+    def _bound(self, turning: three.OrbitControls) -> None:
+        """Let the wheel come no closer than can be drawn, and go no farther than can be seen."""
+        turning.minDistance, turning.maxDistance = self._usual / 20, 10 * self._usual
+
+    def _watch(self, camera: three.Camera) -> None:
+        camera.observe(lambda _: [tell() for tell in self._tell], "position")
+
+    @property
+    def angles(self) -> tuple[float, float]:
+        """Azimuth and elevation of the camera [degrees]."""
+        x, y, z = self._away
+        return degrees(atan2(x, z)), degrees(atan2(y, hypot(x, z)))
+
+    @property
+    def distance(self) -> float:
+        """How far the camera is from what it looks at [m]."""
+        return float(np.linalg.norm(self._away))
+
+    @property
+    def _away(self) -> Array:
+        return np.subtract(self.current.position, self._turning[self.current].target)
+
+    def put(self, position: ArrayLike, target: ArrayLike) -> None:
+        """Place the camera, and have it look at the target, with y upwards in the picture."""
+        eye, at = np.asarray(position, dtype=float), np.asarray(target, dtype=float)
+        camera, turning = self.current, self._turning[self.current]
+        if tuple(turning.target) != tuple(at.tolist()):
+            turning.target = at.tolist()
+        with camera.hold_sync():
+            camera.quaternion = looking(eye, at)
+            camera.position = eye.tolist()
+            if self.orthographic:
+                half = float(np.linalg.norm(eye - at)) * tan(radians(FIELD / 2))
+                camera.top, camera.bottom, camera.zoom = half, -half, 1.0
+                camera.left, camera.right = -half * self._aspect, half * self._aspect
+
+
+def looking(eye: Array, at: Array) -> tuple[float, float, float, float]:
+    """The quaternion (x, y, z, w) of a camera at `eye` that looks at `at` with y upwards."""
+    return quaternion(picture_axes(eye - at))
+
+
+def quaternion(R: Array) -> tuple[float, float, float, float]:
+    """The quaternion (x, y, z, w) of a rotation matrix R (3, 3)."""
+    # The eigenvector of 1 of this symmetric matrix; stable for every rotation.
+    xx, xy, xz, yx, yy, yz, zx, zy, zz = R.ravel()
+    K = np.array(
+        [
+            [xx - yy - zz, xy + yx, xz + zx, zy - yz],
+            [xy + yx, yy - xx - zz, yz + zy, xz - zx],
+            [xz + zx, yz + zy, zz - xx - yy, yx - xy],
+            [zy - yz, xz - zx, yx - xy, xx + yy + zz],
+        ]
+    )
+    x, y, z, w = np.linalg.eigh(K)[1][:, -1]
+    return (float(x), float(y), float(z), float(w))

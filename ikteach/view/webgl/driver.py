@@ -1,0 +1,98 @@
+"""The one channel from the kernel to the scene: one binary message a frame, none queued."""
+
+from collections.abc import Callable, Sequence
+from time import monotonic
+from typing import Any
+
+import anywidget
+import traitlets
+from ipywidgets import Widget, widget_serialization
+
+from ikteach.arrays import Array
+from ikteach.view.widgets.actor import Actor
+from ikteach.view.widgets.closing import Living
+from ikteach.view.widgets.esm import esm
+from ikteach.view.widgets.lacking import LACKING
+
+Move = tuple[Widget, int | list[list[int]]]
+"""What is moved, and by which row of a frame; or, of a mesh, [row, points] of each of its parts."""
+
+AHEAD = 30  # frames that may be sent and not yet known to be drawn: a second's
+PATIENCE = 10.0  # [s] without a sign of life before a page counts as gone
+
+
+class Driver(Living, anywidget.AnyWidget):
+    """Writes matrices into pythreejs objects (see driver.js) and hears what the page has drawn.
+
+    renderer      what it draws with
+    nodes, plan   what it moves, and how (`Move`); set them with `move`
+    rows          how many rows a frame has
+    description   what the picture shows, in words, for those who cannot see it
+    on_sign       is called with True when a page begins to look and with False when it has
+                  drawn, from whichever thread hears of it
+    as_png        draws what was shown last, for a page that lacks pythreejs or WebGL
+    """
+
+    _esm = esm("pictures", "driver")
+    renderer = traitlets.Instance(Widget).tag(sync=True, **widget_serialization)
+    nodes = traitlets.List(traitlets.Instance(Widget)).tag(sync=True, **widget_serialization)
+    plan: Any = traitlets.List().tag(sync=True)
+    rows = traitlets.Int().tag(sync=True)
+    description = traitlets.Unicode().tag(sync=True)
+    lacking = traitlets.Dict(LACKING, read_only=True).tag(sync=True)
+
+    def __init__(self, renderer: Widget, **kwargs: Any) -> None:
+        super().__init__(renderer=renderer, **kwargs)
+        self.sent = self.drawn = -1
+        self._change = 0
+        self.greeted = False
+        self.heard = monotonic()
+        self.on_sign: Callable[[bool], None] = lambda new: None
+        self.as_png: Callable[[], bytes] = bytes
+        self._asked = False
+        self._act = Actor()
+        self.on_msg(self._hear)
+
+    def move(self, moves: Sequence[Move], rows: int) -> None:
+        """Have the page move these from now on, by frames of so many rows."""
+        with self.hold_sync():
+            self.nodes, self.plan = [node for node, _ in moves], [how for _, how in moves]
+            self.rows = rows
+
+    def show(self, matrices: Array, change: int = 0) -> None:
+        """Send [R | p] (rows, 3, 4) to the page. `change` comes back with the drawn frame."""
+        self.sent += 1
+        self._change = change
+        numbers = matrices.swapaxes(-1, -2).astype("<f4")
+        self.send({"frame": self.sent, "change": change}, buffers=[numbers.tobytes()])
+
+    @property
+    def ready(self) -> bool:
+        """Whether a page looks and can take a frame: few are under way to it."""
+        return self.greeted and self.sent - self.drawn < AHEAD
+
+    @property
+    def alone(self) -> bool:
+        """Whether nobody looks: no page yet, or frames are under way and no sign has come back."""
+        waiting = self.sent - self.drawn >= AHEAD
+        return not self.greeted or (waiting and monotonic() - self.heard > PATIENCE)
+
+    def _hear(self, _: Any, content: dict[str, Any], __: Any) -> None:
+        self.heard = monotonic()
+        if "picture" in content:
+            if not self._asked:  # however many pages ask
+                self._asked = True
+                self._act(self._depict, lambda words: self.send({"wrong": words}))
+            return
+        new = "hello" in content
+        if new:
+            self.greeted = True
+            self.drawn = self.sent  # what was under way to a page that has gone is lost
+        else:
+            self.drawn = max(self.drawn, int(content["drawn"]))
+        self.on_sign(new)
+
+    def _depict(self) -> None:
+        """Send the page a picture of the newest frame."""
+        self._asked = False
+        self.send({"picture": self.sent, "change": self._change}, buffers=[self.as_png()])

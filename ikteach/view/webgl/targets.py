@@ -1,0 +1,140 @@
+"""Sliders and number boxes for targets, which always agree with the handles in the scene."""
+
+from collections.abc import Callable
+from typing import Any
+
+import anywidget
+import numpy as np
+import traitlets
+
+from ikteach.arrays import Array, ArrayLike
+from ikteach.checks import numbers
+from ikteach.view.stage.lengths import Lengths, digits_of, round_step
+from ikteach.view.stage.stage import View
+from ikteach.view.webgl.handles import Handles
+from ikteach.view.webgl.objects import effector_colour
+from ikteach.view.webgl.positions import Positions
+from ikteach.view.webgl.scene import Scene
+from ikteach.view.widgets import doors
+from ikteach.view.widgets.actor import in_words
+from ikteach.view.widgets.closing import Living
+from ikteach.view.widgets.esm import esm
+
+ROOM = 1.5  # [m] how far a target of a human may go from where it starts, each way
+
+
+class Targets(Living, anywidget.AnyWidget):
+    """A panel for the targets of a scene, and handles in it if it is a live one.
+
+    scene      what shows them; it is not told to, that is the business of `on_change`
+    start      where the targets are at first, (k, 3) [m]
+    low, high  ranges [m], one number or (k, 3); None: so far as `ROOM` from the start
+    slot       only one of a slot lives at a time: to run a cell again closes the older one
+
+    `positions` (k, 3) is where they are, however they were moved: dragged, by keys, by sliders, by
+    number boxes, by `move`.
+    """
+
+    _esm = esm("courier", "targets")
+    names = traitlets.List(traitlets.Unicode()).tag(sync=True)
+    colours = traitlets.List(traitlets.Unicode()).tag(sync=True)
+    low: Any = traitlets.List().tag(sync=True)
+    high: Any = traitlets.List().tag(sync=True)
+    values: Any = traitlets.List().tag(sync=True)
+    alert = traitlets.Unicode().tag(sync=True)
+    unit = traitlets.Unicode("m").tag(sync=True)  # in which a person reads and writes
+    metres = traitlets.Float(1.0).tag(sync=True)  # of one such unit
+    step = traitlets.Float(0.01).tag(sync=True)  # of sliders and boxes, in that unit
+    digits = traitlets.Int(2).tag(sync=True)
+
+    def __init__(
+        self, scene: View, start: ArrayLike, *, low: ArrayLike | None = None,
+        high: ArrayLike | None = None, slot: str | None = "targets",
+    ) -> None:  # fmt: skip
+        self.slot = slot
+        doors.has("scene", scene, "a Scene or a StillScene", "stage", "show")
+        start = numbers("start", start)
+        if not np.isfinite(start).all():
+            raise ValueError("start is not finite: each target needs three numbers")
+        stage = scene.stage
+        names = stage.effectors.names
+        at = np.asarray(start, dtype=float)
+        room = ROOM * stage.unit * stage.free
+        unit = Lengths.of_places(stage.extent.radius)
+        step = round_step(2 * ROOM * stage.unit / unit.metres)
+        self._model = Positions(
+            names, at, at - room if low is None else low, at + room if high is None else high,
+            unit=unit, step=step * unit.metres,
+        )  # fmt: skip
+        self.handles = Handles(scene, self._model) if isinstance(scene, Scene) else None
+        super().__init__(
+            names=list(names),
+            colours=[effector_colour(i) for i in range(len(names))],
+            low=self._model.low.tolist(),
+            high=self._model.high.tolist(),
+            values=self._model.now.tolist(),
+            unit=unit.name,
+            metres=unit.metres,
+            step=step,
+            digits=digits_of(step),
+        )
+        self._model.on_change(self._agree)
+        self.on_msg(self._hear)
+
+    @property
+    def positions(self) -> Array:
+        """Where the targets are, (k, 3) [m]."""
+        return self._model.now
+
+    def move(self, index: int, position: ArrayLike) -> None:
+        """Move one target; ValueError with the range if it would leave it."""
+        self._model.move(index, position)
+
+    def follow(self, positions: ArrayLike) -> None:
+        """Show where the targets have gone by themselves; nobody is told, nothing is undone."""
+        self._model.follow(positions)
+        self.values = self._model.now.tolist()
+
+    def undo(self) -> None:
+        """Take the last move back."""
+        if self.handles is not None:
+            self.handles.undo()
+        else:
+            self._model.undo()
+
+    def on_change(self, tell: Callable[[int, Array], None]) -> Callable[[int, Array], None]:
+        """Call tell(index, position (3,)) after each move; may be used as a decorator."""
+        self._model.on_change(tell)
+        return tell
+
+    def _agree(self, index: int, position: Array) -> None:
+        self.values = self._model.now.tolist()
+
+    def _hear(self, _: Any, content: dict[str, Any], __: Any) -> None:
+        try:
+            self.alert = ""
+            if "undo" in content:
+                self.undo()
+            elif "target" in content:
+                self._set(content)
+        except Exception as error:  # of whoever follows the targets
+            self.alert = in_words(error)
+        finally:
+            if "number" in content:
+                self.send({"heard": content["number"]})
+
+    def _set(self, content: dict[str, Any]) -> None:
+        index, axis, value = int(content["target"]), int(content["axis"]), content["value"]
+        position = self.positions[index]
+        position[axis] = np.nan if value is None else float(value)
+        if not content.get("typed"):
+            self._model.drag(index, position, again=not content["fresh"])
+            return
+        try:
+            self._model.check(index, position)
+        except ValueError as error:
+            words = str(error)
+            self.alert = f"{words[0].upper()}{words[1:]}. Nothing was changed."
+            self.send({"again": True})  # the box shows once more what is
+        else:
+            self._model.move(index, position)

@@ -1,0 +1,20 @@
+"""A ball that is turned like a globe, and says how far."""
+
+import anywidget
+import traitlets
+
+from ikteach.view.widgets.closing import Living
+from ikteach.view.widgets.esm import esm
+
+
+class Ball(Living, anywidget.AnyWidget):
+    """A rotation ball: dragging it, or the arrow keys on it, turn what it stands for.
+
+    azimuth    degrees to the left of the front, −180 to 180
+    elevation  degrees above the floor, −85 to 85
+    """
+
+    _esm = esm("ball")
+    azimuth = traitlets.Float(0.0).tag(sync=True)
+    elevation = traitlets.Float(0.0).tag(sync=True)
+    label = traitlets.Unicode("Rotation ball").tag(sync=True)

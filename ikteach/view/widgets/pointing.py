@@ -1,0 +1,40 @@
+"""A plot and a table in which one thing is chosen, by pointing or with the keyboard."""
+
+from typing import Any
+
+import anywidget
+import traitlets
+
+from ikteach.view.widgets.closing import Living
+from ikteach.view.widgets.esm import esm
+
+
+class Curve(Living, anywidget.AnyWidget):
+    """A picture of curves with a line at the chosen place; a click or the arrow keys move it.
+
+    png, alt  the picture, and what it shows in words
+    span      where its axis begins and ends across the picture, 0..1
+    places    where each thing lies on the axis, 0..1
+    labels    what each is called
+    chosen    the number of the chosen one
+    """
+
+    _esm = esm("curve")
+    png = traitlets.Bytes(b"").tag(sync=True)
+    alt = traitlets.Unicode("").tag(sync=True)
+    span = traitlets.List([0.0, 1.0]).tag(sync=True)
+    places: Any = traitlets.List().tag(sync=True)
+    labels: Any = traitlets.List().tag(sync=True)
+    chosen = traitlets.Int(0).tag(sync=True)
+
+
+class Rows(Living, anywidget.AnyWidget):
+    """A table whose rows can be chosen with a click or the arrow keys.
+
+    header, rows  words; chosen: the number of the chosen row
+    """
+
+    _esm = esm("rows")
+    header: Any = traitlets.List().tag(sync=True)
+    rows: Any = traitlets.List().tag(sync=True)
+    chosen = traitlets.Int(0).tag(sync=True)

@@ -1,0 +1,48 @@
+"""HTML in the page, and tables of numbers as HTML. Names in them never become markup."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import ipywidgets as widgets
+import pandas as pd
+import traitlets
+
+from ikteach.markup import Markup, escaped, plain, untouched
+from ikteach.view.widgets.closing import Living
+
+
+class Prose(Living, widgets.HTML):  # type: ignore[misc]
+    """A piece of HTML; a `value` that is not `Markup` is text, and is shown as it is."""
+
+    @traitlets.validate("value")
+    def _safe(self, proposal: Any) -> Markup:
+        return untouched(escaped(proposal["value"])) if proposal["value"] else Markup()
+
+
+def table(frame: pd.DataFrame, decimals: str, *, kind: str = "ikteach-table") -> Markup:
+    """The numbers of a table, each in the format `decimals`, with its rows and columns named."""
+    shown = frame.rename(index=_plain, columns=_plain)
+    return Markup(shown.to_html(float_format=decimals.format, na_rep="–", border=0, classes=kind))
+
+
+def grid(heads: Sequence[object], rows: Iterable[Sequence[object]], title: str = "") -> Markup:
+    """Rows of words, as a table whose first column names them."""
+    head, first, cell = map(Markup, ("<th>{}</th>", '<th scope="row">{}</th>', "<td>{}</td>"))
+    nothing = Markup()
+    body = nothing.join(
+        Markup("<tr>{}{}</tr>").format(
+            first.format(name), nothing.join(cell.format(value) for value in row)
+        )
+        for name, *row in rows
+    )
+    return Markup(
+        '<table class="ikteach-table">{}<thead><tr>{}</tr></thead><tbody>{}</tbody></table>'
+    ).format(
+        Markup("<caption>{}</caption>").format(title) if title else nothing,
+        nothing.join(map(head.format, heads)),
+        body,
+    )
+
+
+def _plain(name: Any) -> Any:
+    return plain(name) if isinstance(name, str) else name

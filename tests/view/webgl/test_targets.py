@@ -1,0 +1,181 @@
+"""The targets: whatever moves one, everything agrees; what does not fit is refused in words."""
+
+import numpy as np
+import pytest
+from ipywidgets.widgets.widget import _instances
+
+from ikteach.body import figures
+from ikteach.view import Scene, StillScene
+from ikteach.view.webgl.positions import Positions
+from ikteach.view.webgl.targets import Targets
+
+TREE, EFFECTORS = figures.human()
+START = np.array([[0.35, -0.9, 0.0], [-0.35, -0.9, 0.0], [-0.8, 0.0, 0.0], [0.8, 0.0, 0.0]])
+PLACE = np.array([0.6, 0.25, 0.1])
+
+
+@pytest.fixture
+def targets():
+    scene = Scene(TREE, EFFECTORS)
+    panel = Targets(scene, START)
+    yield panel
+    panel.close()
+    scene.close()
+
+
+def grip(targets, index, at, fresh=True):
+    """What the page sends when a target is dragged."""
+    targets.handles._hear(None, {"target": index, "at": list(at), "fresh": fresh}, [])
+
+
+def slide(targets, index, axis, value, **more):
+    """What the page sends when a slider moves, or with typed=True when a number is entered."""
+    message = {"target": index, "axis": axis, "value": value, "fresh": True, **more}
+    targets._hear(None, message, [])
+
+
+def agrees(targets, positions):
+    assert targets.positions == pytest.approx(np.array(positions))
+    assert np.array(targets.values) == pytest.approx(np.array(positions))
+    assert targets.handles.positions.now == pytest.approx(np.array(positions))
+
+
+def test_all_ways_of_moving_agree(targets):
+    wanted = START.copy()
+    agrees(targets, wanted)
+    grip(targets, 3, PLACE)
+    wanted[3] = PLACE
+    agrees(targets, wanted)
+    slide(targets, 2, 1, 0.4)
+    wanted[2, 1] = 0.4
+    agrees(targets, wanted)
+    slide(targets, 2, 0, -0.55, typed=True)
+    wanted[2, 0] = -0.55
+    agrees(targets, wanted)
+    targets.move(0, [0.3, -0.8, 0.2])
+    wanted[0] = [0.3, -0.8, 0.2]
+    agrees(targets, wanted)
+
+
+def test_whoever_asks_is_told_of_each_move(targets):
+    told = []
+
+    @targets.on_change
+    def follow(index, position):
+        told.append((index, position.tolist()))
+
+    grip(targets, 3, PLACE)
+    slide(targets, 3, 0, 0.5)
+    targets.undo()
+    assert told == [(3, PLACE.tolist()), (3, [0.5, 0.25, 0.1]), (3, PLACE.tolist())]
+
+
+def test_a_drag_is_one_move_and_undo_takes_it_back(targets):
+    grip(targets, 1, [-0.3, -0.9, 0.0])
+    grip(targets, 3, [0.7, 0.1, 0.0])
+    grip(targets, 3, [0.6, 0.2, 0.0], fresh=False)
+    grip(targets, 3, PLACE, fresh=False)
+    targets.handles._hear(None, {"undo": True}, [])
+    assert targets.positions[3] == pytest.approx(START[3])
+    assert targets.positions[1] == pytest.approx([-0.3, -0.9, 0.0])
+    targets._hear(None, {"undo": True}, [])
+    agrees(targets, START)
+    targets.undo()
+    agrees(targets, START)
+
+
+def test_a_drag_stops_at_the_edge_of_the_range(targets):
+    grip(targets, 3, [9, -9, 0.2])
+    assert targets.positions[3] == pytest.approx([2.3, -1.5, 0.2])
+
+
+@pytest.mark.parametrize("value", [9, -9, None])
+def test_a_typed_number_outside_is_refused_with_the_range(targets, value):
+    sent = []
+    targets.send = sent.append
+    slide(targets, 3, 0, value, typed=True)
+    assert "X of hand.l goes from -0.70 to 2.30 m" in targets.alert
+    assert "Nothing was changed." in targets.alert
+    assert {"again": True} in sent
+    agrees(targets, START)
+    slide(targets, 3, 0, 0.5, typed=True)
+    assert targets.alert == ""
+
+
+def test_moving_outside_from_a_cell_is_a_valueerror(targets):
+    with pytest.raises(ValueError, match=r"y of foot.l goes from -2.40 to 0.60 m; 3 is"):
+        targets.move(0, [0.3, 3, 0])
+    with pytest.raises(ValueError, match=r"foot.l needs three numbers"):
+        targets.move(0, [0.3, 3])
+    agrees(targets, START)
+
+
+def test_an_error_of_a_follower_is_told_and_the_session_goes_on(targets):
+    @targets.on_change
+    def follow(index, position):
+        if position[0] < 0:
+            raise RuntimeError("no way there")
+
+    grip(targets, 3, [-0.1, 0, 0])
+    assert targets.handles.alert == "That did not work: no way there"
+    slide(targets, 3, 0, -0.2)
+    assert targets.alert == "That did not work: no way there"
+    grip(targets, 3, PLACE)
+    assert targets.handles.alert == ""
+    assert targets.positions[3] == pytest.approx(PLACE)
+
+
+def test_every_message_of_a_drag_is_answered(targets):
+    sent = []
+    targets.handles.send = sent.append
+    for number in (1, 2):
+        message = {"target": 3, "at": PLACE.tolist(), "fresh": number == 1, "number": number}
+        targets.handles._hear(None, message, [])
+    assert sent == [{"heard": 1}, {"heard": 2}]
+
+
+def test_a_planar_figure_keeps_its_targets_in_the_plane():
+    scene = Scene(*figures.planar_arm(3))
+    panel = Targets(scene, [[1.0, 1.0, 0.0]])
+    grip(panel, 0, [0.5, 0.5, 0.8])
+    assert panel.positions.tolist() == [[0.5, 0.5, 0.0]]
+    panel.close()
+    scene.close()
+
+
+def test_the_still_renderer_has_sliders_and_no_handles():
+    still = StillScene(TREE, EFFECTORS)
+    panel = Targets(still, START)
+    assert panel.handles is None
+    slide(panel, 3, 0, 0.5)
+    panel.undo()
+    assert panel.positions == pytest.approx(START)
+    panel.close()
+    still.close()
+
+
+def test_closing_frees_every_widget():
+    before = set(_instances)
+    scene = Scene(TREE, EFFECTORS)
+    panel = Targets(scene, START)
+    panel.close()
+    scene.close()
+    assert set(_instances) - before == set()
+
+
+def test_positions_refuse_a_start_outside():
+    with pytest.raises(ValueError, match="2 targets need positions"):
+        Positions(["a", "b"], [[0, 0, 0]], -1, 1)
+    with pytest.raises(ValueError, match=r"z of a goes from -1.00 to 1.00 m; 2 is not"):
+        Positions(["a"], [[0, 0, 2]], -1, 1)
+
+
+def test_only_so_many_moves_are_kept():
+    positions = Positions(["a"], [[0, 0, 0]], -1, 1)
+    for i in range(500):
+        positions.move(0, [i / 1000, 0, 0])
+    taken = 0
+    while positions.undo() is not None:
+        taken += 1
+    assert taken == 200
+    assert positions.now[0, 0] == pytest.approx(0.299)
