@@ -21,8 +21,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 COMPUTING = [
-    *(f"tests/{room}" for room in ("bench", "body", "motion", "solvers")),
-    *(f"tests/test_{name}.py" for name in ("study", "trials")),
+    *(f"tests/{room}" for room in ("bench", "body", "motion", "solvers", "study")),
 ]
 KERNELS, RARER_KERNELS = ["Haswell", "Sandybridge"], ["SkylakeX", "Zen"]
 ROUNDED = ["tests/body", "tests/motion", "tests/solvers", "tests/course/test_prose.py"]

@@ -87,9 +87,7 @@ def test_method(bench: Notebook) -> None:
         bench.settle("bench.session.method", method)
         bench.frames(2)
     open_panel(bench, "Options of the methods")
-    methods = (
-        "__import__('ikteach.motion.live.session', fromlist=['x']).in_words(bench.session.methods)"
-    )
+    methods = f"{IN_WORDS}(bench.session.methods)"
     slide(bench, "dls: damping")
     bench.settle(f"round({methods}['dls']['damping'], 3)", 1.0)
     slide(bench, "transpose: gain")
@@ -112,9 +110,7 @@ def test_method(bench: Notebook) -> None:
     bench.settle(
         "[round(bench.session.caps['dls'], 4), bench.session.caps['sdls']]", [0.7854, None]
     )
-    options = (
-        "__import__('ikteach.motion.live.session', fromlist=['x']).in_words(bench.session.options)"
-    )
+    options = f"{IN_WORDS}(bench.session.options)"
     bench.press("per_chain")
     bench.settle(f"{options}['cap']", "per_chain")
     bench.press("clip")

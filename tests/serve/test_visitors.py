@@ -21,12 +21,12 @@ from jupyter_server.services.kernels.connection.base import (
     deserialize_msg_from_ws_v1,
     serialize_msg_to_ws_v1,
 )
-from tests.course.test_gate import HOSTILE
 from tornado.httpclient import AsyncHTTPClient, HTTPClientError, HTTPRequest, HTTPResponse
 from tornado.websocket import WebSocketClientConnection, WebSocketClosedError, websocket_connect
 
 from ikteach.serve.lecture import gate
 from ikteach.serve.lecture import kernel as limits
+from tests.serve.test_gate import HOSTILE
 
 OPEN_EACH = 3
 START = f"""
