@@ -55,7 +55,9 @@ class Done:
 
     def __str__(self) -> str:
         line = f"{self.result:8} {self.seconds:5.0f} s  {self.name}"
-        return line if self.result != "left out" else f"{line}: {self.said.splitlines()[-1].strip()}"
+        return (
+            line if self.result != "left out" else f"{line}: {self.said.splitlines()[-1].strip()}"
+        )
 
 
 class Runner:
