@@ -1,4 +1,4 @@
-"""Front ends that cannot show a live figure: what is told in the cell, and what is seen there."""
+"""Pages that cannot show a live figure, or fail: what is told in the cell, and what goes on."""
 
 import json
 from collections.abc import Callable, Iterator
@@ -17,7 +17,18 @@ PICTURES, STILL = ".ikteach-pictures", ".ikteach-still"
 ERROR = "Click to show javascript error"
 THREE = ["jupyter.extensions.jupyter-threejs", "jupyterlab-datawidgets"]
 ANYWIDGET, IPYWIDGETS = "anywidget", "@jupyter-widgets/jupyterlab-manager"
-CELL = "from ikteach.view import GaitPlayer\nplayer = GaitPlayer()\nplayer"
+FAILED, SCENE = ".ikteach-failed", f"{DRIVER}[data-frame]"
+SESSION = "window.jupyterapp.shell.currentWidget.sessionContext.session"
+CELL = """from ikteach import figures
+from ikteach.view import GaitPlayer, Scene
+from ikteach.view.targets import Targets
+from ipywidgets import VBox
+player = GaitPlayer()
+player"""
+ARM = """scene = Scene(*figures.planar_arm(3))
+goal = Targets(scene, [[1.5, 1.5, 0]])
+scene.show([0.4, 0.5, 0.6], goal.positions)
+VBox([scene.widget, goal])"""
 
 
 @contextmanager
@@ -35,7 +46,7 @@ def without(lab: Lab, *extensions: str) -> Iterator[None]:
 @pytest.fixture
 def figure(lab: Lab) -> Iterator[Callable[[Browser], Notebook]]:
     """Open a notebook of one figure in a page of its own, and run it."""
-    book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(CELL)])
+    book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(c) for c in (CELL, ARM)])
     book.metadata.kernelspec = {"name": "python3", "display_name": "Python 3"}
     nbformat.write(book, lab.folder / "lacking.ipynb")
     lab.stop_kernels()
@@ -43,7 +54,7 @@ def figure(lab: Lab) -> Iterator[Callable[[Browser], Notebook]]:
 
     def open_one(browser: Browser) -> Notebook:
         notebooks.append(Notebook(open_page(browser), lab, "lacking.ipynb"))
-        notebooks[-1].run_cell("GaitPlayer")
+        notebooks[-1].run_cell("player =")
         return notebooks[-1]
 
     yield open_one
@@ -124,4 +135,42 @@ def test_a_whole_page_hears_nothing_of_it(
     notebook.page.wait_for_selector(STILL, state="attached", timeout=READY)
     notebook.frames(200)  # longer than any of them waits
     assert not notebook.page.locator(f"{STILL}, {PICTURES}").locator("visible=true").count()
+    assert notebook.errors == []
+
+
+def test_what_fails_in_the_page_is_told_once_and_stops_nothing(
+    figure: Callable[[Browser], Notebook], browser: Browser
+) -> None:
+    notebook = figure(browser)
+    page = notebook.page
+    page.wait_for_selector(SCENE, timeout=READY)
+    notebook.kernel("None", "player.close()")
+    notebook.run_cell("scene =")
+    page.wait_for_selector(".ikteach-stage", timeout=READY)
+    page.wait_for_selector(SCENE, timeout=READY)
+    for values in "[[]]", "[[1]]", "[[1.25, 1.0, 0.0]]":  # numbers that are not there
+        notebook.kernel("None", f"goal.values = {values}")
+    box = page.get_by_label("hand x", exact=True)
+    page.wait_for_function("box => box.value === '1.25'", arg=box.element_handle(), timeout=READY)
+    assert page.locator(FAILED).count() == 1
+    assert page.locator(FAILED).inner_text().startswith("This did not work in the page")
+    # Frames that are none, and then one.
+    for odd in "{'frame': 1}", "{'frame': 1}, buffers=[b'123']", "{}", "{'picture': 1}":
+        notebook.kernel("None", f"scene.driver.send({odd})")
+    notebook.kernel("None", "scene.show([0.4, 0.5, 1.6], goal.positions)")
+    notebook.settle("scene.driver.sent > 0", True)
+    sent = notebook.kernel("scene.driver.sent")
+    newest = f"+document.querySelector('{DRIVER}').dataset.frame === {sent}"
+    page.wait_for_function(newest, timeout=READY)
+    assert page.locator(FAILED).count() == 1
+    # A kernel that has gone.
+    page.evaluate(f"{SESSION}.kernel.restart()")
+    page.locator(".ikteach-stage").focus()
+    for key in "Tab", "ArrowUp":
+        page.keyboard.press(key)
+    page.wait_for_selector(f"{FAILED} >> text=its kernel has ended", timeout=READY)
+    page.wait_for_function(f"{SESSION}?.kernel?.status === 'idle'", timeout=READY)
+    notebook.run_cell("player =")
+    page.wait_for_selector(SCENE, timeout=READY)
+    notebook.frames(5)
     assert notebook.errors == []

@@ -56,9 +56,8 @@ class Note:
         """Give the output of a cell, whose widgets this note is among, its still picture."""
         words = in_place_of(still)
         self.widget.value = STYLE + words
-        return {
-            **bundle, "text/html": str(words), "image/png": still.png, "text/plain": still.alt,
-        }  # fmt: skip
+        picture = {"image/png": still.png} if still.png else {}
+        return {**bundle, **picture, "text/html": str(words), "text/plain": still.alt}
 
 
 def in_place_of(still: Still) -> Markup:
@@ -67,4 +66,4 @@ def in_place_of(still: Still) -> Markup:
         '<div class="ikteach-still" style="line-height:1.4"><p style="border-left:4px solid '
         '#d55e00;padding:4px 10px;margin:4px 0">{}</p>{}</div>'
     )
-    return Markup(box).format(WIDGETS, Markup(still._repr_html_()))
+    return Markup(box).format(WIDGETS, Markup(still._repr_html_() if still.png else ""))

@@ -2,6 +2,8 @@
 
 const LIVES = "ikteach-lives"; // says to the page that our scripts run in it: see lacking.py
 
+const LOST_KERNEL = "its kernel has ended or was restarted";
+
 // `render`, with what goes wrong in it, and later in its callbacks, told to the person.
 function told(render) {
   return async (given) => {
@@ -18,13 +20,14 @@ function told(render) {
 // The same model. What a callback of it throws, or a message that finds no kernel, stops no other.
 function guarded(model, tell) {
   const guards = new Map();
-  const guard = (act) => (...values) => {
+  const guard = (act, cause) => (...values) => {
+    const fail = (error) => tell(cause ?? error);
     try {
       const done = act(...values);
-      done?.catch?.(tell);
+      done?.catch?.(fail);
       return done;
     } catch (error) {
-      tell(error);
+      fail(error);
     }
   };
   const own = {
@@ -33,8 +36,8 @@ function guarded(model, tell) {
       model.on(events, guards.get(act));
     },
     off: (events, act) => model.off(events, guards.get(act)),
-    send: guard((...values) => model.send(...values)),
-    save_changes: guard(() => model.save_changes()),
+    send: guard((...values) => model.send(...values), LOST_KERNEL),
+    save_changes: guard(() => model.save_changes(), LOST_KERNEL),
   };
   return new Proxy({}, {
     get(_, name) {
