@@ -127,23 +127,16 @@ def test_a_server_without_widgets(
         picture(notebook, STILL, f"lacking_{'ipywidgets' if more else 'anywidget'}")
 
 
-def test_a_whole_page_hears_nothing_of_it(
-    figure: Callable[[Browser], Notebook], browser: Browser
-) -> None:
-    notebook = figure(browser)
-    notebook.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
-    notebook.page.wait_for_selector(STILL, state="attached", timeout=READY)
-    notebook.frames(200)  # longer than any of them waits
-    assert not notebook.page.locator(f"{STILL}, {PICTURES}").locator("visible=true").count()
-    assert notebook.errors == []
-
-
-def test_what_fails_in_the_page_is_told_once_and_stops_nothing(
+def test_a_whole_page_hears_nothing_of_it_and_what_fails_in_it_is_told_once(
     figure: Callable[[Browser], Notebook], browser: Browser
 ) -> None:
     notebook = figure(browser)
     page = notebook.page
     page.wait_for_selector(SCENE, timeout=READY)
+    page.wait_for_selector(STILL, state="attached", timeout=READY)
+    notebook.frames(190)  # longer than any of them waits
+    assert not page.locator(f"{STILL}, {PICTURES}").locator("visible=true").count()
+    # What fails stops nothing else.
     notebook.kernel("None", "player.close()")
     notebook.run_cell("scene =")
     page.wait_for_selector(".ikteach-stage", timeout=READY)

@@ -88,14 +88,18 @@ def test_method(bench: Notebook) -> None:
         bench.frames(2)
     open_panel(bench, "Options of the methods")
     methods = f"{IN_WORDS}(bench.session.methods)"
+
+    def option(method: str, name: str) -> str:  # None until the slide has come to the kernel
+        return f"getattr({methods}[{method!r}], 'get', {{}}.get)({name!r})"
+
     slide(bench, "dls: damping")
-    bench.settle(f"round({methods}['dls']['damping'], 3)", 1.0)
+    bench.settle(f"round({option('dls', 'damping')} or 0, 3)", 1.0)
     slide(bench, "transpose: gain")
-    bench.settle(f"{methods}['transpose']['gain']", 2.0)
+    bench.settle(option("transpose", "gain"), 2.0)
     slide(bench, "pseudoinverse: cutoff")
-    bench.settle(f"{methods}['pseudoinverse']['cutoff']", 0.5)
+    bench.settle(option("pseudoinverse", "cutoff"), 0.5)
     slide(bench, "sdls: γ_max", "Home")
-    bench.settle(f"{methods}['sdls']['max_angle']", 0.05)
+    bench.settle(option("sdls", "max_angle"), 0.05)
     bench.press("soft")
     bench.settle(f"{methods}['sdls']['clamp']", "soft")
     open_panel(bench, "Mix: a method per effector")
