@@ -21,7 +21,7 @@ FAILED, SCENE = ".ikteach-failed", f"{DRIVER}[data-frame]"
 SESSION = "window.jupyterapp.shell.currentWidget.sessionContext.session"
 CELL = """from ikteach import figures
 from ikteach.view import GaitPlayer, Scene
-from ikteach.view.targets import Targets
+from ikteach.view.webgl.targets import Targets
 from ipywidgets import VBox
 player = GaitPlayer()
 player"""

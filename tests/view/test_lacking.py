@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from ikteach.view.caps import CapPlayer
-from ikteach.view.driver import Driver
-from ikteach.view.lacking import LACKING, PYTHREEJS, WIDGETS
-from ikteach.view.slope import slope_bench
 from PIL import Image
 
 from ikteach import figures
 from ikteach.view import GaitPlayer, Poser, Scene
+from ikteach.view.chapters.pseudoinverse import CapPlayer
+from ikteach.view.chapters.transpose import slope_bench
+from ikteach.view.webgl.driver import Driver
+from ikteach.view.widgets.lacking import LACKING, PYTHREEJS, WIDGETS
 
 TEACHING = Path(__file__).parents[2] / "TEACHING.md"
 
