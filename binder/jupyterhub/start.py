@@ -7,14 +7,13 @@ from pathlib import Path
 
 from jupyterhub.singleuser import main
 
-import ikteach
 from ikteach.publish.delivery import deliver, find_course, told
 
 FOLDER = Path.home() / "ikteach-course"
 
 os.umask(0o077)  # what a student answers is for no other student to read
 try:
-    course = find_course(Path(ikteach.__file__).resolve().parent)
+    course = find_course()
     print(*told(deliver(course.notebooks, FOLDER), FOLDER), sep="\n", flush=True)
     FOLDER.chmod(0o700)  # what was there before, too
 except OSError as error:  # a full disk, for instance: what the student has can still be opened

@@ -5,7 +5,6 @@ name, or for files in folders the name of the outermost one, as a learning platf
 Nothing is changed, and nothing is passed over in silence: what cannot be read is named.
 """
 
-import argparse
 import os
 import re
 import sys
@@ -19,6 +18,7 @@ import pandas as pd
 from ikteach.course.questions import words
 from ikteach.course.record import KINDS, MOST, valid
 from ikteach.files import bounded, read_json, whole_characters, write_whole
+from ikteach.publish.parser import Parser, RefusedError
 
 NAMES = dict(zip(KINDS, ("prediction", "exercise", "quiz"), strict=True))
 SKIPPED = 3  # the exit code when all went well, but for files that were left out
@@ -96,8 +96,8 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def main(argv: list[str]) -> int:
-    """`python -m ikteach collect FOLDER`; the exit code, which is 3 if a file was left out."""
-    parser = argparse.ArgumentParser(
+    """Collect the answers; give the exit code, 3 if a file was left out."""
+    parser = Parser(
         prog="python -m ikteach collect",
         description="One table of all predictions, checks and quiz answers in FOLDER: files that "
         "`export` wrote, or predictions.json.",
@@ -112,17 +112,17 @@ def main(argv: list[str]) -> int:
     outputs = {name: path for name in ("table", "logs") if (path := getattr(options, name))}
     for path in outputs.values():
         if os.path.lexists(path):
-            return _refuse(f"{path} exists already and was left alone; name another file.")
+            raise RefusedError(f"{path} exists already and was left alone; name another file.")
     if len(set(map(os.path.realpath, outputs.values()))) < len(outputs):
-        return _refuse("The table and the logs need two files.")
+        raise RefusedError("The table and the logs need two files.")
     try:
         found = collect(options.folder.expanduser())
     except NotADirectoryError as error:
-        return _refuse(f"{error}.")
+        raise RefusedError(f"{error}.") from None
     for name, why in found.skipped.items():
         print(_shown(f"{name}: {why}"), file=sys.stderr)
     if found.table.empty:
-        return _refuse(f"There are no answers in {options.folder}.")
+        raise RefusedError(f"There are no answers in {options.folder}.")
     count = found.table[["student", "file"]].nunique()
     print(f"{len(found.table)} answers of {count['student']} students in {count['file']} files")
     print(_shown(summary(found.table).to_string()))
@@ -130,7 +130,7 @@ def main(argv: list[str]) -> int:
         try:
             write_whole(path, harmless(getattr(found, name)).to_csv(index=False))
         except OSError as error:
-            return _refuse(f"{error}.")
+            raise RefusedError(f"{error}.") from None
         print(f"written: {path}")
     return SKIPPED if found.skipped else 0
 
@@ -152,11 +152,6 @@ def _text(cell: Any) -> Any:
 def _shown(text: str) -> str:
     """Text as a terminal may show it: without what would steer it."""
     return "".join(one if one.isprintable() or one == "\n" else "�" for one in text)
-
-
-def _refuse(sentence: str) -> int:
-    print(sentence, file=sys.stderr)
-    return 1
 
 
 def _files(folder: Path) -> Iterator[tuple[Path, str]]:

@@ -12,6 +12,7 @@ from typing import Literal, NamedTuple
 
 from ikteach.files import read_json, write_whole
 
+PACKAGE = Path(__file__).resolve().parents[1]
 MANIFEST = ".ikteach.json"
 MOST = 100 * 2**20  # bytes of a notebook, outputs and all
 
@@ -34,12 +35,12 @@ class Delivery(NamedTuple):
     beside: str = ""
 
 
-def find_course(package: Path) -> Course:
-    """The course that belongs to this package folder: its clone's, or the one in its wheel."""
-    clone = package.parent
+def find_course() -> Course:
+    """Find the course: of the clone, or in the wheel."""
+    clone = PACKAGE.parent
     if (clone / "pyproject.toml").is_file() and (clone / "notebooks").is_dir():
         return Course(clone / "notebooks", clone=True)
-    return Course(package / "notebooks", clone=False)
+    return Course(PACKAGE / "notebooks", clone=False)
 
 
 def course_files(notebooks: Path) -> list[str]:

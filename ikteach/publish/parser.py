@@ -1,9 +1,15 @@
-"""The command line of our commands: misspelt words are answered with what may be meant."""
+"""The command line of every command: options, and refusals in a sentence."""
 
 import argparse
 import difflib
 from collections.abc import Iterable
 from typing import Any
+
+from ikteach.checks import shown
+
+
+class RefusedError(Exception):
+    """A command cannot do what it was asked to; the message says why."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -24,8 +30,3 @@ def meant(word: str, known: Iterable[str]) -> str:
     word = word.partition("=")[0].lstrip("-").lower()
     close = difflib.get_close_matches(word, plain, n=1, cutoff=0.75)
     return f"; did you mean {plain[close[0]]}?" if close else ""
-
-
-def shown(word: str) -> str:
-    """Quote a word of the command line, shortened."""
-    return repr(word if len(word) <= 60 else f"{word[:59]}…")

@@ -19,9 +19,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ikteach.markup import Markup
-from ikteach.publish import builds
+from ikteach.publish import builds, delivery
 from ikteach.publish.delivery import MANIFEST, Manifest, chapters, find_course, read_manifest
-from ikteach.publish.parser import Parser
+from ikteach.publish.parser import Parser, RefusedError
 
 PYODIDE = "314.0.6"
 PYODIDE_ADDRESS = f"https://cdn.jsdelivr.net/pyodide/v{PYODIDE}/full"
@@ -50,8 +50,8 @@ class Size(NamedTuple):
     packages: int
 
 
-def main(package: Path, argv: list[str]) -> int:
-    """`python -m ikteach site FOLDER`; the exit code."""
+def main(argv: list[str]) -> int:
+    """Build the site; give the exit code."""
     parser = Parser(
         prog="python -m ikteach site",
         description="Build the course as static files in FOLDER: any web server can hand them out, "
@@ -69,11 +69,12 @@ def main(package: Path, argv: list[str]) -> int:
     options = parser.parse_args(argv)
     try:
         folder = options.folder.expanduser().resolve()
-        size = build(package, folder, options.pyodide)
+        size = build(folder, options.pyodide)
     except ModuleNotFoundError as error:
-        return _refuse(f"{error.name} is not installed: pip install 'ikteach[site]'")
+        install = "pip install 'ikteach[site]'"
+        raise RefusedError(f"{error.name} is not installed: {install}") from None
     except (LookupError, ValueError) as error:
-        return _refuse(str(error.args[0]))
+        raise RefusedError(str(error.args[0])) from None
     print(
         f"built {folder}: {size.chapters} chapters, {size.packages} Python packages, "
         f"{size.files} files, {size.bytes / 1e6:.0f} MB; it asks nothing of any other place\n"
@@ -83,17 +84,12 @@ def main(package: Path, argv: list[str]) -> int:
     return 0
 
 
-def _refuse(sentence: str) -> int:
-    print(sentence, file=sys.stderr)
-    return 1
-
-
-def build(package: Path, folder: Path, pyodide: str | None = None) -> Size:
+def build(folder: Path, pyodide: str | None = None) -> Size:
     """Build the site in `folder`, which appears only once it is complete.
 
     LookupError or ValueError say in a sentence what is missing or in the way.
     """
-    notebooks = find_course(package).notebooks
+    notebooks = find_course().notebooks
     if folder.is_relative_to(notebooks.resolve()):
         raise ValueError(f"{folder} is among the notebooks themselves; name another folder.")
     if reason := hindrance(folder):
@@ -103,9 +99,7 @@ def build(package: Path, folder: Path, pyodide: str | None = None) -> Size:
         project, made = Path(room, "project"), Path(room, "site")
         builds.student(notebooks, project / "files")
         kernel = fetch_kernel(Path(room, "kernel"))
-        packages = distribution(
-            package, pyodide or PYODIDE_ADDRESS, project / "static" / "pyodide", kernel
-        )
+        packages = distribution(pyodide or PYODIDE_ADDRESS, project / "static" / "pyodide", kernel)
         extensions(project / "widgets", kernel)
         lay_out(project, made, kernel)
         titles = chapters(notebooks)
@@ -160,7 +154,7 @@ def fetch_kernel(folder: Path) -> Path:
     return folder
 
 
-def distribution(package: Path, where: str, folder: Path, kernel: Path) -> list[str]:
+def distribution(where: str, folder: Path, kernel: Path) -> list[str]:
     """Put what the course needs of Python into `folder`; the names of its packages."""
     from ikteach.publish import wheels
 
@@ -172,7 +166,7 @@ def distribution(package: Path, where: str, folder: Path, kernel: Path) -> list[
     for name in CORE:
         (folder / name).write_bytes(take(where, name))
     _agree_on_version(folder / "pyodide.mjs", where)
-    ours = [wheels.own(package, folder)]
+    ours = [wheels.own(delivery.PACKAGE, folder)]
     for wheel in (_extension(KERNEL, kernel) / "static" / "pypi").glob("*.whl"):
         if wheel.name.startswith(STANDINS):
             ours.append(Path(shutil.copy(wheel, folder)))

@@ -29,6 +29,7 @@ from hypothesis import strategies as st
 from ikteach import __main__ as cli
 from ikteach.publish import delivery as opening
 from ikteach.publish.delivery import MANIFEST, Delivery, chapters, deliver, find_course, told
+from ikteach.serve import lab as serve
 
 ROOT = Path(__file__).resolve().parents[2]
 GAIT, STUDY = "07_gait.ipynb", "08_comparison.ipynb"
@@ -87,8 +88,8 @@ def clone(course: Path) -> Path:
 def lab(course: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
     """The commands with which JupyterLab would be run, in place of running it."""
     commands: list[list[str]] = []
-    monkeypatch.setattr(cli, "PACKAGE", course.parent)
-    monkeypatch.setattr(cli, "run", lambda command, environment: commands.append(command) or 0)
+    monkeypatch.setattr(opening, "PACKAGE", course.parent)
+    monkeypatch.setattr(serve, "run", lambda command, environment: commands.append(command) or 0)
     monkeypatch.chdir(tmp_path)
     return commands
 
@@ -301,15 +302,16 @@ def test_title_of_an_odd_notebook(tmp_path: Path, text: str, title: str) -> None
     assert chapters(tmp_path) == {GAIT: title}
 
 
-def test_course_of_a_wheel_and_of_a_clone(tmp_path: Path) -> None:
+def test_course_of_a_wheel_and_of_a_clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     package = tmp_path / "ikteach"
+    monkeypatch.setattr(opening, "PACKAGE", package)
     (package / "notebooks").mkdir(parents=True)
     (tmp_path / "notebooks").mkdir()  # somebody's folder in site-packages: no clone
-    assert find_course(package) == (package / "notebooks", False)
+    assert find_course() == (package / "notebooks", False)
     (tmp_path / "pyproject.toml").touch()
-    assert find_course(package) == (tmp_path / "notebooks", True)
+    assert find_course() == (tmp_path / "notebooks", True)
     (tmp_path / "notebooks").rmdir()  # somebody's project that has the package copied into it
-    assert find_course(package) == (package / "notebooks", False)
+    assert find_course() == (package / "notebooks", False)
 
 
 # ---- the command line
@@ -366,10 +368,10 @@ def test_clone_is_copied_into_a_named_folder(
 
 def test_kernels_of_a_clone_find_its_package(course: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTHONPATH", "before")
-    monkeypatch.setattr(cli, "PACKAGE", course.parent)
+    monkeypatch.setattr(opening, "PACKAGE", course.parent)
     in_wheel, in_clone = opening.Course(course, False), opening.Course(course, True)
-    assert cli.lab_environment(in_wheel)["PYTHONPATH"] == "before"
-    paths = cli.lab_environment(in_clone)["PYTHONPATH"].split(os.pathsep)
+    assert serve.environment(in_wheel)["PYTHONPATH"] == "before"
+    paths = serve.environment(in_clone)["PYTHONPATH"].split(os.pathsep)
     assert paths == [str(course.parents[1]), "before"]
 
 
@@ -515,7 +517,7 @@ def test_refusal_of_root_is_explained(
     monkeypatch.delattr(os, "geteuid", raising=False)  # as on Windows
     if user is not None:
         monkeypatch.setattr(os, "geteuid", lambda: user, raising=False)
-    monkeypatch.setattr(cli, "run", lambda command, environment: code)
+    monkeypatch.setattr(serve, "run", lambda command, environment: code)
     assert cli.main(["--", *extra]) == code
     assert ("python -m ikteach -- --allow-root" in capsys.readouterr().err) == hinted
 

@@ -174,7 +174,7 @@ def test_a_command_that_is_not_known_makes_no_folder(
         (["lecture", "--rom"], "'--rom'; did you mean --room?"),
         (["lecture", "--prot=8866"], "did you mean --port?"),
         (["lecture", "a", "b"], "there is no place for 'b'"),
-        (["lecture", "--" + "x" * 500], "x…'"),
+        (["lecture", "--" + "x" * 500], " … xxxxxxxxxxxxxx'"),
         (["lecture", "--port", "0"], "ports are 1 to 65535"),
         (["lecture", "--port", "9" * 5000], "ports are 1 to 65535"),
         (["lecture", "--port", "²"], "ports are 1 to 65535"),
