@@ -18,7 +18,7 @@ COMMANDS = {  # each a module with main(argv), which gives the exit code
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Run a command; the exit code says whether that went well."""
+    """Run a command; give its exit code."""
     if hasattr(sys.stdout, "reconfigure"):  # a title may hold a σ that the console cannot show
         sys.stdout.reconfigure(errors="replace")
     argv = sys.argv[1:] if argv is None else argv
@@ -38,7 +38,10 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def misspelt(argv: list[str]) -> str:
-    """Say why a command is not one or stands in the wrong place, or nothing."""
+    """Explain a command that is unknown or stands elsewhere.
+
+    Empty where none is meant.
+    """
     word = argv[0] if argv else ""
     late = [command for command in COMMANDS if command in argv and "--" not in argv]
     if late and word.startswith("-"):

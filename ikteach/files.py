@@ -62,14 +62,17 @@ def quoted(value: Any) -> str:
 
 
 def bounded(words: str, most: int = 400) -> str:
-    """Give a text of at most `most` letters; what is too much is left out of its middle."""
+    """Shorten a text to at most `most` letters.
+
+    What is too much is left out of its middle.
+    """
     half = (most - 3) // 2
     short = words if len(words) <= most else f"{words[:half]} … {words[-half:]}"
     return whole_characters(short)
 
 
 def whole_characters(text: str) -> str:
-    """Give a text without half characters, which can be written and sent nowhere."""
+    """Replace half characters, which can be written nowhere."""
     return HALF.sub("?", text)
 
 
@@ -77,10 +80,10 @@ def whole_characters(text: str) -> str:
 
 
 def read_text(path: Name, most: int) -> str:
-    """Read a text file of at most `most` bytes, in UTF-8 or, with its mark, in UTF-16.
+    """Read a text file of at most `most` bytes.
 
-    ValueError says "it is …", for a sentence that begins with the file's name; OSError where it
-    cannot be read at all.
+    In UTF-8 or, with its mark, in UTF-16. ValueError says "it is …", for a sentence that begins
+    with the file's name; OSError where it cannot be read at all.
     """
     data = read_bytes(path, most)
     for sign, what in SIGNS.items():
@@ -97,7 +100,7 @@ def read_text(path: Name, most: int) -> str:
 
 
 def read_bytes(path: Name, most: int) -> bytes:
-    """Read a file of at most `most` bytes; ValueError if it has more, OSError."""
+    """Read a file; ValueError beyond `most` bytes, OSError."""
     path = Path(path)
     try:
         info, data = os.stat(path), b""
@@ -118,10 +121,10 @@ def read_bytes(path: Name, most: int) -> bytes:
 
 
 def read_json(path: Name, most: int) -> Any:
-    """Read a JSON file of at most `most` bytes; NaN and Infinity come as text.
+    """Read a JSON file of at most `most` bytes.
 
-    All its numbers are finite, its texts can be written again, and it is not nested deeper than
-    `DEEPEST`. ValueError says "it is …", OSError as `read_text`.
+    NaN and Infinity come as text. All its numbers are finite, its texts can be written again, and
+    it is not nested deeper than `DEEPEST`. ValueError says "it is …", OSError as `read_text`.
     """
     text = read_text(path, most)
     try:
@@ -165,9 +168,10 @@ def _check_sound(content: Any) -> None:
 
 
 def plain(value: Any) -> Any:
-    """Give a value as Python's own and so that every reader of JSON can read it: no NaN, in words.
+    """Make a value that every reader of JSON reads.
 
-    Arrays become lists, and what JSON does not know becomes a text of at most 400 letters.
+    Without NaN, and in Python's own types. Arrays become lists, and what JSON does not know becomes
+    a text of at most 400 letters.
     """
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
@@ -187,14 +191,17 @@ def plain(value: Any) -> Any:
 
 
 def write_whole(path: Name, content: str | bytes, *, overwrite: bool = False) -> None:
-    """Write a file in one step; FileExistsError if it is there, unless `overwrite`; OSError."""
+    """Write a file in one step.
+
+    FileExistsError if it is there, unless `overwrite`; OSError.
+    """
     with drafted(path, overwrite=overwrite) as draft:
         draft.write_bytes(content.encode() if isinstance(content, str) else content)
 
 
 @contextmanager
 def drafted(path: Name, *, overwrite: bool = False) -> Iterator[Path]:
-    """Give an empty draft to write to, which gets the name `path` when the block ends well.
+    """Give a draft that becomes `path` when the block ends.
 
     Otherwise it is removed. FileExistsError if there is a file of that name, unless `overwrite`;
     OSError if it cannot be written, and then the old one is as it was.
@@ -236,7 +243,10 @@ def _check_place(path: Path, overwrite: bool) -> None:
 
 
 def publish(draft: Path, path: Path, *, overwrite: bool) -> None:
-    """Give the draft its name, in one step; the errors are those of `drafted`."""
+    """Give the draft its name, in one step.
+
+    The errors are those of `drafted`.
+    """
     file = os.open(draft, os.O_RDWR)
     try:
         os.fsync(file)  # a full disk in the network is told of only here
@@ -300,11 +310,11 @@ def _said(error: OSError, path: Path, done: str) -> OSError:
 
 @contextmanager
 def alone(path: Name) -> Iterator[None]:
-    """Let one process after the other change `path`, each of which must ask here.
+    """Let one process after the other change `path`.
 
-    TimeoutError if another one does not come to an end; OSError if nothing can be written there.
-    The lock is the system's, so that it ends with whoever holds it; where there is none (in the
-    browser, on some disks in a network), it is a file that only one can make.
+    Each must ask here. TimeoutError if another one does not come to an end; OSError if nothing can
+    be written there. The lock is the system's, so that it ends with whoever holds it; where there
+    is none (in the browser, on some disks in a network), it is a file that only one can make.
     """
     path = Path(path)
     lock = path.with_name(f".{path.name}.lock")

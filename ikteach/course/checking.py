@@ -42,16 +42,19 @@ Returns = Shape | type | Callable[..., Shape] | None
 
 
 class WrongError(Exception):
-    """The answer is wrong; the message says how, in one sentence."""
+    """A wrong answer; the message says how, in one sentence."""
 
 
 class NotYetError(Exception):
-    """There is no answer yet; the message may say by what we tell."""
+    """No answer yet; the message may say more."""
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a check found; true only if it passed. `hint` is empty when there is none to give."""
+    """The finding of a check, true only if it passed.
+
+    `hint` is empty when there is none to give.
+    """
 
     key: str
     passed: bool
@@ -63,7 +66,10 @@ class Verdict:
 
     @property
     def mood(self) -> Mood:
-        """How to set it: an exercise that was not begun is no failure."""
+        """Choose how to set it.
+
+        An exercise that was not begun is no failure.
+        """
         return "good" if self.passed else "plain" if self.sentence.startswith(NOT_YET) else "bad"
 
     def __str__(self) -> str:
@@ -78,7 +84,7 @@ class Verdict:
 
 
 class Exercise(NamedTuple):
-    """One exercise: its checker, and what kind of answer it wants."""
+    """One exercise: its checker, and the kind of its answer."""
 
     key: str
     checker: Callable[[Any], None]
@@ -124,11 +130,11 @@ def expect(holds: Any, sentence: str) -> None:
 
 
 def check(key: str, answer: Any, *, strict: bool = False) -> Verdict:
-    """Whether the exercise `key` is solved by `answer`, a function or a value, in a sentence.
+    """Check whether `answer` solves the exercise `key`, in a sentence.
 
-    Each failure in a row gives the next hint. LookupError for an unknown key. The verdict is true
-    only if it is solved; `strict` raises AssertionError with the sentence if not, for graders that
-    go by what a cell raises.
+    The answer is a function or a value. Each failure in a row gives the next hint. LookupError for
+    an unknown key. The verdict is true only if it is solved; `strict` raises AssertionError with
+    the sentence if not, for graders that go by what a cell raises.
     """
     verdict = judge(find(key), answer)
     if verdict.mood == "bad":
@@ -147,7 +153,7 @@ def check(key: str, answer: Any, *, strict: bool = False) -> Verdict:
 
 
 def find(key: str) -> Exercise:
-    """The exercise of that key, from its chapter's module; LookupError if there is none."""
+    """Find the exercise of that key, or raise LookupError."""
     module = f"ikteach.course.exercises.ch{str(key).partition('.')[0]}"
     try:
         importlib.import_module(module)
@@ -160,7 +166,7 @@ def find(key: str) -> Exercise:
 
 
 def judge(task: Exercise, answer: Any) -> Verdict:
-    """The verdict on an answer, without hints and without a record of it."""
+    """Judge an answer, without hints and without recording it."""
     name = _name(answer, task.key.partition(".")[2])
 
     def verdict(passed: bool, sentence: str) -> Verdict:
@@ -195,7 +201,9 @@ def _name(answer: Any, other: str) -> str:
 
 
 class Answer:
-    """A student's function as a checker sees it: it returns what it must or raises WrongError.
+    """A student's function as a checker sees it.
+
+    It returns what it must or raises WrongError.
 
     call   the last call, as text for sentences
     """
@@ -228,7 +236,7 @@ class Answer:
         return of_form(result, wanted, f"`{self.call}` returned")
 
     def error(self, *arguments: Any) -> Exception | None:
-        """What the function raises for these arguments; None if it returns."""
+        """Give what the function raises, or None if it returns."""
         self.call = f"{self.name}({', '.join(map(brief, arguments))})"
         try:
             result = self._run(copy.deepcopy(arguments))
@@ -281,9 +289,10 @@ def _value(task: Exercise, answer: Any) -> Any:
 
 
 def of_form(result: Any, wanted: Any, said: str) -> Any:
-    """`result` if it is what is wanted, as a finite array where that is a shape; else WrongError.
+    """Give `result` back if it is of the wanted form.
 
-    `said` begins the sentence: "`f(x)` returned".
+    As a finite array where that is a shape; WrongError if it is not. `said` begins the sentence:
+    "`f(x)` returned".
     """
     if wanted is None:
         return result
@@ -311,7 +320,7 @@ def of_form(result: Any, wanted: Any, said: str) -> Any:
 
 
 def brief(value: Any) -> str:
-    """A value in few words, for a sentence."""
+    """Tell a value in few words, for a sentence."""
     if isinstance(value, np.ndarray) and value.size > 4:
         return f"array {value.shape}"
     if isinstance(value, np.ndarray | float):

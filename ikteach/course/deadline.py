@@ -22,17 +22,20 @@ _shielded: set[CodeType] = set()
 
 
 class TooLongError(BaseException):
-    """The time is over. Not an Exception, so that `except Exception:` does not swallow it."""
+    """The end of the time.
+
+    Not an Exception, so that `except Exception:` does not swallow it.
+    """
 
 
 def shielded(function: F) -> F:
-    """Let a function of ours come to its end, whatever the time is."""
+    """Let a function of ours end, whatever the time."""
     _shielded.add(function.__code__)
     return function
 
 
 def deadline(seconds: float) -> AbstractContextManager[None]:
-    """Raise TooLongError inside the block once it has run for so long.
+    """Raise TooLongError inside the block after some seconds.
 
     A timer's signal does it where there is one: in the main thread of a kernel on Linux or macOS.
     Elsewhere (Windows, another thread, Pyodide) each line of Python looks at the clock; what runs

@@ -32,9 +32,9 @@ _folder: Path | None = None
 
 
 def home() -> Path:
-    """The folder of the answers: the one in which the kernel was when it was first asked.
+    """Find the folder of the answers, the notebook's.
 
-    That is the notebook's, wherever its cells go later.
+    It is the one in which the kernel was when it was first asked, wherever cells go later.
     """
     global _folder
     if _folder is None:
@@ -46,21 +46,25 @@ def home() -> Path:
 
 
 def entries(kind: str) -> dict[str, Entry]:
-    """Key -> entry of all that is known of this kind here; changing it changes nothing."""
+    """Read the entries of this kind, {key: entry}.
+
+    Changing it changes nothing.
+    """
     with _lock:
         answers, _ = _read(home())
         return answers.get(kind, {})
 
 
 def entry(kind: str, key: str) -> Entry:
-    """What is known under this key; empty if nothing is."""
+    """Read the entry of this key, empty if missing."""
     return entries(kind).get(key, {})
 
 
 def store(kind: str, key: str, *, again: bool = False, **fields: Any) -> str:
-    """Add these fields under the key, at once; a sentence if something is amiss, else ''.
+    """Add these fields under the key, at once.
 
-    `again` counts this as another try, in the field `tries`.
+    Returns a sentence if something is amiss, else ''. `again` counts this as another try, in the
+    field `tries`.
     """
     folder = home()
     with _lock:
@@ -80,7 +84,7 @@ def store(kind: str, key: str, *, again: bool = False, **fields: Any) -> str:
 
 
 def export(path: str | os.PathLike[str], log: Any = None, *, overwrite: bool = False) -> Notice:
-    """Write predictions, verdicts and quiz answers, and a `log` (a DataFrame), to one JSON file.
+    """Write all answers, and a `log`, to a JSON file.
 
     A file that exists is left alone unless `overwrite`. Returns a sentence about what was done.
     `pandas.read_json(io.StringIO(json.dumps(file["log"])), orient="split")` gives the log back.
@@ -112,7 +116,10 @@ def export(path: str | os.PathLike[str], log: Any = None, *, overwrite: bool = F
 
 
 def valid(answers: Any) -> Answers:
-    """The answers if they have the form that we write; ValueError says what has not."""
+    """Check that answers have the form that we write.
+
+    ValueError says what has not.
+    """
     if not isinstance(answers, dict):
         raise ValueError("it holds no answers of this course")
     for kind in KINDS:

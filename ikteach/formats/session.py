@@ -34,7 +34,7 @@ MOST = 64 * 2**20  # [bytes] of the JSON file
 def save(
     path: str | os.PathLike[str], run: Log | Session, *, overwrite: bool = False
 ) -> tuple[Path, Path]:
-    """Write the run to <path>.json and <path>.csv, and return both paths.
+    """Write the run to <path>.json and <path>.csv; return both.
 
     FileExistsError where one of them is there already, unless `overwrite`; ValueError for a run
     that could not be read back; OSError where nothing can be written. The new run is there from the
@@ -74,10 +74,11 @@ def save(
 
 
 def load(path: str | os.PathLike[str]) -> Log:
-    """The run that `save` has written; `path` is that of the JSON file, or without its ending.
+    """Read the run that `save` has written.
 
-    All of it is checked before anything is made of it. FileNotFoundError and ValueError say which
-    file is missing, of another kind, or what in it is wrong; OSError where it cannot be read.
+    `path` is that of the JSON file, or without its ending. All of it is checked before anything is
+    made of it. FileNotFoundError and ValueError say which file is missing, of another kind, or what
+    in it is wrong; OSError where it cannot be read.
     """
     file, told = _told(path)
     try:

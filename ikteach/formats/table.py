@@ -51,7 +51,10 @@ def header(tree: Tree, effectors: Effectors) -> list[str]:
 
 
 def rows(log: Log) -> Iterator[Iterable[Any]]:
-    """Give the header and the rows; a float goes out as its repr, which gives the same float."""
+    """Give the header and the rows.
+
+    A float goes out as its repr, which gives the same float.
+    """
     yield header(log.tree, log.effectors)
     for t in range(len(log)):
         tick = [getattr(log, what)[t].item() for what in PER_TICK[:-1]]
@@ -133,9 +136,10 @@ def _number(text: str, delimiter: str) -> float:
 
 
 def read(table: Path, rows: int, facts: dict[str, Any]) -> Log:
-    """The log of these facts, whose rows must be every method of every tick in turn.
+    """Read the log of these facts from its table.
 
-    ValueError says what in the table is wrong, for a sentence that begins with its name.
+    Its rows must be every method of every tick in turn. ValueError says what in the table is wrong,
+    for a sentence that begins with its name.
     """
     methods, tree, effectors = facts["methods"], facts["tree"], facts["effectors"]
     m, n, k = len(methods), len(tree), len(effectors)

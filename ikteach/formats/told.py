@@ -64,7 +64,10 @@ def _joints(tree: Tree) -> Iterator[dict[str, Any]]:
 
 
 def facts(told: dict[str, Any]) -> dict[str, Any]:
-    """What `Log` needs beside its numbers; ValueError says what is missing or wrong."""
+    """Read all that `Log` needs beside its numbers.
+
+    ValueError says what is missing or wrong.
+    """
     tree, effectors = _figure(field(told, "figure", dict))
     dt = field(told, "dt", float)
     if dt <= 0:
@@ -99,14 +102,17 @@ def _of_kind(value: Any, kind: type, what: str) -> Any:
 
 
 def field(told: dict[str, Any], name: str, kind: type, of: str = "") -> Any:
-    """Give the value of that name, which must be there and of that kind."""
+    """Give the value of that name and kind, or refuse."""
     if name not in told:
         raise ValueError(f"{name!r}{of} is missing")
     return _of_kind(told[name], kind, f"{name!r}{of}")
 
 
 def names(what: str, names: list[Any]) -> tuple[str, ...]:
-    """Check the names of methods, joints or effectors: each is text, and there once."""
+    """Check the names of methods, joints or effectors.
+
+    Each is text, and there once.
+    """
     if not 0 < len(names) <= MOST[what]:
         raise ValueError(f"there are {len(names)} {what}s, and from 1 to {MOST[what]:,} can be")
     for name in names:

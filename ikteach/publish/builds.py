@@ -51,17 +51,20 @@ def main(argv: list[str]) -> int:
 
 
 def student(notebooks: Path, folder: Path) -> None:
-    """The notebooks as they are, without outputs, and the files that they use."""
+    """Copy the notebooks without outputs, and their files."""
     _make(notebooks, folder, lambda notebook: notebook)
 
 
 def instructor(notebooks: Path, folder: Path) -> None:
-    """The notebooks with solutions folded in; LookupError where one is missing."""
+    """Copy the notebooks with solutions folded in.
+
+    LookupError where one is missing.
+    """
     _make(notebooks, folder, with_solutions)
 
 
 def pages(notebooks: Path, folder: Path) -> None:
-    """The course to read: a page a chapter, and an index."""
+    """Write the course to read: a page per chapter."""
     from ikteach.publish import pages
 
     titles = chapters(notebooks)
@@ -91,7 +94,7 @@ def _make(notebooks: Path, folder: Path, change: Callable[[Notebook], Notebook])
 
 
 def clean(notebook: Notebook) -> Notebook:
-    """A copy without outputs, and without cells that are tagged `solution`."""
+    """Copy a notebook without outputs and `solution` cells."""
     notebook = copy.deepcopy(notebook)
     notebook.cells = [c for c in notebook.cells if "solution" not in c.metadata.get("tags", [])]
     for cell in notebook.cells:
@@ -101,7 +104,7 @@ def clean(notebook: Notebook) -> Notebook:
 
 
 def with_solutions(notebook: Notebook) -> Notebook:
-    """A copy that has after each cell that checks an exercise its solution, folded."""
+    """Copy a notebook with solutions folded after exercises."""
     import nbformat
 
     notebook = copy.deepcopy(notebook)
@@ -128,7 +131,7 @@ def checks(cell: Notebook) -> Iterator[tuple[str, str]]:
 
 
 def solution(key: str) -> str:
-    """The source of the solution of exercise `key`; LookupError if there is none."""
+    """Find the source of a solution, or raise LookupError."""
     chapter = Path(__file__).parents[1] / "course" / "solutions" / f"ch{key.partition('.')[0]}.py"
     if not chapter.exists():
         raise LookupError(

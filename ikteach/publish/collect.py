@@ -45,7 +45,7 @@ class Collected(NamedTuple):
 
 
 def collect(folder: Path) -> Collected:
-    """Read every file of answers in the folder and the folders in it."""
+    """Read every file of answers in the folder and below."""
     if not folder.is_dir():
         raise NotADirectoryError(f"{folder} is not a folder")
     rows: list[dict[str, Any]] = []
@@ -79,9 +79,10 @@ def collect(folder: Path) -> Collected:
 
 
 def summary(table: pd.DataFrame) -> pd.DataFrame:
-    """A row for each question: how many answered, how many are right, what they said.
+    """Summarise the answers, a row per question.
 
-    Of a student who handed in several files the newest answer counts.
+    How many answered, how many are right, what they said. Of a student who handed in several files
+    the newest answer counts.
     """
     in_time = table.sort_values("at", kind="stable", na_position="first")
     newest = in_time.drop_duplicates(["student", "kind", "key"], keep="last")
@@ -96,7 +97,7 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def main(argv: list[str]) -> int:
-    """Collect the answers; give the exit code, 3 if a file was left out."""
+    """Collect the answers; give the exit code."""
     parser = Parser(
         prog="python -m ikteach collect",
         description="One table of all predictions, checks and quiz answers in FOLDER: files that "
@@ -136,9 +137,10 @@ def main(argv: list[str]) -> int:
 
 
 def harmless(table: pd.DataFrame) -> pd.DataFrame:
-    """A table in which no text is a formula to a spreadsheet: an apostrophe stands before it.
+    """Make a table in which nothing is a spreadsheet's formula.
 
-    Numbers stay as they are, and so do texts that are one, such as "-0.5".
+    An apostrophe stands before each text that would be one. Numbers stay as they are, and so do
+    texts that are one, such as "-0.5".
     """
     return table.rename(columns=_text).map(_text)
 

@@ -9,14 +9,14 @@ from ikteach.checks import shown
 
 
 class RefusedError(Exception):
-    """A command cannot do what it was asked to; the message says why."""
+    """A refusal of a command; the message says why."""
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser that asks, of an option that it does not know, whether another was meant."""
+    """A parser that asks whether another option was meant."""
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """Read the command line, or end with a sentence and exit code 2."""
+        """Read the command line, or end with exit code 2."""
         options, unknown = self.parse_known_args(args, namespace)
         if unknown:
             known = [name for action in self._actions for name in action.option_strings]
@@ -25,7 +25,10 @@ class Parser(argparse.ArgumentParser):
 
 
 def meant(word: str, known: Iterable[str]) -> str:
-    """Ask for the known word that is most like another, or say nothing."""
+    """Ask for the known word most like another.
+
+    Empty if none is like it.
+    """
     plain = {name.lstrip("-"): name for name in known}
     word = word.partition("=")[0].lstrip("-").lower()
     close = difflib.get_close_matches(word, plain, n=1, cutoff=0.75)

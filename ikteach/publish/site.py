@@ -85,9 +85,10 @@ def main(argv: list[str]) -> int:
 
 
 def build(folder: Path, pyodide: str | None = None) -> Size:
-    """Build the site in `folder`, which appears only once it is complete.
+    """Build the site in `folder`.
 
-    LookupError or ValueError say in a sentence what is missing or in the way.
+    It appears only once it is complete. LookupError or ValueError say in a sentence what is missing
+    or in the way.
     """
     notebooks = find_course().notebooks
     if folder.is_relative_to(notebooks.resolve()):
@@ -115,7 +116,10 @@ def build(folder: Path, pyodide: str | None = None) -> Size:
 
 
 def hindrance(folder: Path) -> str:
-    """Why nothing may be built there, in a sentence; empty if something may."""
+    """Say why nothing may be built there.
+
+    Empty if something may.
+    """
     if not folder.exists():
         return ""
     if not folder.is_dir():
@@ -136,7 +140,7 @@ def hindrance(folder: Path) -> str:
 
 
 def contents(folder: Path) -> Manifest:
-    """File name -> SHA-256 of each file in the folder, but for the list of them itself."""
+    """List the files in the folder: name -> SHA-256."""
     from ikteach.publish.wheels import digest
 
     files = {p.relative_to(folder).as_posix(): p for p in folder.rglob("*") if p.is_file()}
@@ -144,7 +148,10 @@ def contents(folder: Path) -> Manifest:
 
 
 def fetch_kernel(folder: Path) -> Path:
-    """Unpack JupyterLite's Python kernel into `folder`; LookupError if it cannot be had."""
+    """Unpack JupyterLite's Python kernel into `folder`.
+
+    LookupError if it cannot be had.
+    """
     command = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
     command += ["--no-deps", "--target", str(folder), KERNEL_WHEEL]
     done = subprocess.run(command, capture_output=True, text=True)
@@ -155,7 +162,10 @@ def fetch_kernel(folder: Path) -> Path:
 
 
 def distribution(where: str, folder: Path, kernel: Path) -> list[str]:
-    """Put what the course needs of Python into `folder`; the names of its packages."""
+    """Put what the course needs of Python into `folder`.
+
+    Returns the names of its packages.
+    """
     from ikteach.publish import wheels
 
     folder.mkdir(parents=True)
@@ -198,7 +208,10 @@ def is_address(where: str) -> bool:
 
 
 def take(where: str, name: str) -> bytes:
-    """One file of Pyodide's, from a folder or an address; LookupError if it is not there."""
+    """Read a file of Pyodide's, from folder or address.
+
+    LookupError if it is not there.
+    """
     try:
         if not is_address(where):
             return Path(where, name).read_bytes()
@@ -218,7 +231,7 @@ def _agree_on_version(script: Path, where: str) -> None:
 
 
 def extensions(folder: Path, kernel: Path) -> None:
-    """Copy the JupyterLab extensions of EXTENSIONS: those installed, and the kernel's."""
+    """Copy the JupyterLab extensions, installed or the kernel's."""
     for name in EXTENSIONS:
         shutil.copytree(_extension(name, kernel), folder / name)
         facts = folder / name / "package.json"
@@ -277,7 +290,7 @@ def lay_out(project: Path, made: Path, kernel: Path) -> None:
 
 
 def start_page(titles: Mapping[str, str]) -> str:
-    """The first page: a link a chapter, and what to know before."""
+    """Make the first page: a link per chapter, and advice."""
     row = Markup('<li><a href="lab/index.html?path={}">{}</a></li>\n')
     rows = Markup().join(row.format(name, title) for name, title in titles.items())
     return START_PAGE.replace("ROWS", rows)

@@ -35,7 +35,10 @@ class Facts(NamedTuple):
 
 
 def own(package: Path, folder: Path) -> Path:
-    """The wheel of ikteach itself, of a clone or as installed, made in `folder`."""
+    """Make the wheel of ikteach itself in `folder`.
+
+    Of a clone or as installed.
+    """
     clone = package.parent
     if not (clone / "pyproject.toml").is_file():
         return again("ikteach", folder)
@@ -45,7 +48,10 @@ def own(package: Path, folder: Path) -> Path:
 
 
 def again(name: str, folder: Path) -> Path:
-    """The wheel of an installed package, made again in `folder`; LookupError where none can be."""
+    """Make the wheel of an installed package again.
+
+    In `folder`; LookupError where none can be.
+    """
     try:
         installed = distribution(name)
     except PackageNotFoundError:
@@ -108,7 +114,7 @@ def facts(wheel: Path) -> Facts:
 
 
 def entry(wheel: Path) -> Entry:
-    """The wheel in Pyodide's lock file, without what it depends on."""
+    """Describe the wheel for Pyodide's lock file, without dependencies."""
     name, version, _, imports = facts(wheel)
     return {
         "name": name,
@@ -127,7 +133,7 @@ def lock(
     pyodide: Mapping[str, Entry], wheels: Iterable[Path], roots: Iterable[str], folder: Path,
     python: str,
 ) -> dict[str, Entry]:  # fmt: skip
-    """The packages that the wheels and the roots need, each with all that it depends on.
+    """Choose all packages that the wheels and roots need.
 
     pyodide  the packages that Pyodide brings, by name
     folder   where the wheels are, and where those of further packages are made

@@ -12,9 +12,9 @@ from ikteach.publish.parser import RefusedError
 def options(
     parser: argparse.ArgumentParser, argv: list[str]
 ) -> tuple[argparse.Namespace, list[str]]:
-    """Read the options of `parser` and of every server, and what follows `--`.
+    """Read the options of `parser` and of every server.
 
-    The latter is for the server's own program.
+    And what follows `--`: The latter is for the server's own program.
     """
     parser.add_argument("--no-browser", action="store_true", help="print the address only")
     parser.add_argument("--port", metavar="N", type=port_number, help="use exactly this port")
@@ -30,7 +30,7 @@ def port_number(text: str) -> int:
 
 
 def check(server: str, module: str, extra: str, port: int | None) -> None:
-    """Refuse to start a server that is not installed, or whose port is taken.
+    """Refuse a server that lacks its package or port.
 
     module, extra  its module, and the extra of this package with which it is installed
     """

@@ -15,7 +15,7 @@ from ikteach.solvers.response import directions, factors
 def by_direction(
     tree: Tree, effectors: Effectors, theta: ArrayLike, targets: ArrayLike, **options: Any
 ) -> pd.DataFrame:
-    """Take one step of SDLS apart, a row per singular direction.
+    """Take a step of SDLS apart, a row per direction.
 
     σ [m/rad], asked u_iᵀe [m], N, M, γ [rad], the factor f that SDLS takes [rad/m], and the share
     of 1/σ that it leaves, for each direction i at a pose θ (n,) with targets (k, 3); no number

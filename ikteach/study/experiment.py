@@ -36,7 +36,7 @@ def capped(solver: Solver, max_step: float | None, chains: Index, cap: Cap = who
 
 
 class Downhill(NamedTuple):
-    """Promise and effect of a step of the transpose, per gain (g,).
+    """Promise and effect of a transpose step, per gain (g,).
 
     promised  (g,)  ‖e − gain α JJᵀe‖², by the linear model [m²]
     actual    (g,)  ‖e‖² at θ + gain α Jᵀe [m²]
@@ -92,7 +92,7 @@ def starts(tree: Tree, count: int, *, spread: float = 0.5, seed: int = 0) -> Arr
 
 
 def nearby(theta: ArrayLike, count: int = 40, *, apart: float = 1e-12, seed: int = 0) -> Array:
-    """Make poses that hardly differ, θ (n,) the first of them: (count, n) [rad].
+    """Make poses that hardly differ from θ (n,): (count, n) [rad].
 
     No angle differs from that of θ by more than `apart` [rad]. If runs from them come to different
     things, they are chaotic: rounding decides, and a single one says nothing. Tell such runs by

@@ -17,7 +17,7 @@ MEASURES = ["mean", "median", "p95", "max", "jitter", "capped", "held", "smalles
 
 
 def columns_of(table: pd.DataFrame, columns: Iterable[str], numeric: bool = False) -> list[str]:
-    """Check that a table has rows and these columns: their names.
+    """Check that a table has rows and these columns.
 
     columns  names, or one name alone
     numeric  whether they must be made of numbers
@@ -122,7 +122,7 @@ def ranges(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def by_phase(table: pd.DataFrame, period: float, parts: int = 24) -> pd.DataFrame:
-    """Average the distance to target [m] in each part of the cycle.
+    """Average the distance to target [m] over the cycle.
 
     A row per phase 0..1, a column per method and effector. `period` is the gait's [s].
     """
@@ -178,7 +178,7 @@ def variants(run: Track, labels: Iterable[Any], name: str = "variant") -> pd.Dat
 
 
 def measures(run: Track, member: tuple[Any, ...]) -> dict[str, float]:
-    """Measure one member of a batch; () where there is no batch."""
+    """Measure one member of a batch; () without a batch."""
     error = run.error[:, *member]
     return {
         "mean": error.mean(),

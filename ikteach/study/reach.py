@@ -14,7 +14,7 @@ from ikteach.motion.reach.ways import WAYS, Way, Ways, advance
 
 
 def standings(session: Reaching) -> pd.DataFrame:
-    """Compare how each way stands with the cursor now, a row per way.
+    """Compare how the ways stand with the cursor now.
 
     distance [cm]      from the hand to the cursor
     largest step [°]   of a joint in one tick, since the cursor moved
@@ -39,7 +39,7 @@ def standings(session: Reaching) -> pd.DataFrame:
 
 
 def reaches(cursors: ArrayLike, ways: Mapping[str, Way] = WAYS, **options: Any) -> pd.DataFrame:
-    """Reach from rest to each of the cursors (b, 3), a row per way.
+    """Reach from rest to cursors (b, 3), a row per way.
 
     arrived        share that came within a centimetre and stayed
     median, p95    ticks that those took
@@ -66,7 +66,7 @@ def reaches(cursors: ArrayLike, ways: Mapping[str, Way] = WAYS, **options: Any) 
 
 
 def follow(cursors: ArrayLike, way: Way, ticks: int | None = None, **options: Any) -> pd.DataFrame:
-    """Follow cursors from rest by one way, a row per tick.
+    """Follow cursors from rest, a row per tick.
 
     cursors            (T, 3), or (3,) to be followed for `ticks` ticks
 

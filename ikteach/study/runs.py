@@ -23,7 +23,7 @@ PER_FRAME = ("times", "targets", "theta", "error", "capped", "held")  # of a Tra
 
 
 def log(run: Track, *, can_reach: Mask | None = None) -> pd.DataFrame:
-    """Tabulate one run without batches: a row per frame and effector.
+    """Tabulate one run: a row per frame and effector.
 
     frame, time [s], method, effector
     error           distance to target at the end of the frame [m]
@@ -104,7 +104,7 @@ def compare(
     methods: Methods = SOLVERS,
     **options: Any,
 ) -> pd.DataFrame:
-    """Log every method on the same targets; arguments as in `runs`."""
+    """Log every method on the same targets, as `runs` does."""
     return together(runs(tree, effectors, targets, methods, **options))
 
 
@@ -127,7 +127,7 @@ def together(tracks: Mapping[str, Track]) -> pd.DataFrame:
 
 
 def after(run: Track, seconds: float) -> Track:
-    """Leave out the first seconds, in which a method finds its targets."""
+    """Leave out the first seconds, spent finding the targets."""
     late = of_run(run).times > number("seconds", seconds)
     if not late.any():
         raise ValueError(f"nothing of a run of {run.times[-1]:g} s is left after {seconds:g} s")
@@ -136,7 +136,7 @@ def after(run: Track, seconds: float) -> Track:
 
 
 def timing(tracks: Mapping[str, Track]) -> pd.Series:
-    """Tell the wall time per step of each run [s], on this machine."""
+    """Tell the wall time per step of each run [s]."""
     same_targets(tracks)
     seconds = {name: run.seconds for name, run in tracks.items()}
     return pd.Series(seconds, name="seconds a step", dtype=float).rename_axis("method")

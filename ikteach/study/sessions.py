@@ -44,14 +44,14 @@ def ticks(run: Log) -> pd.DataFrame:
 
 
 def angles(run: Log) -> pd.DataFrame:
-    """Tabulate poses [rad]: a row per tick and method, a joint per column."""
+    """Tabulate poses [rad]: a row per tick and method."""
     index = pd.MultiIndex.from_product([_session(run).tick, run.methods], names=["tick", "method"])
     theta = run.theta.reshape(-1, len(run.tree))
     return pd.DataFrame(theta, index=index, columns=list(run.tree.names))
 
 
 def events(run: Log) -> pd.DataFrame:
-    """Tabulate what was changed in a session, a row per event."""
+    """Tabulate the changes of a session, a row per event."""
     rows = [(e.run, e.tick, e.time, e.kind, str(e)) for e in _session(run).events]
     return pd.DataFrame(rows, columns=["run", "tick", "time", "kind", "words"])
 

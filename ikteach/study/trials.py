@@ -34,7 +34,7 @@ def trials(
     methods: Methods = SOLVERS,
     **options: Any,
 ) -> pd.DataFrame:
-    """Run every method on every motion, under every set of caps.
+    """Run every method on every motion under all caps.
 
     motions   {name: gait}, or any function of times (T,) that gives targets (T, k, 3) [m] and has
               them by phase under `at`, as a `Gait` has
@@ -173,7 +173,7 @@ def spread(
     measures: Iterable[str] = ("mean", "jitter", "reversals"),
     by: Iterable[str] = ("caps", "motion", "method"),
 ) -> pd.DataFrame:
-    """Average measures of `trials` over starts and rates, with standard deviations."""
+    """Average measures of `trials` over starts and rates."""
     by, measures = columns_of(table, by), columns_of(table, measures, numeric=True)
     return table.groupby(by, observed=True)[measures].agg(["mean", "std"])
 
@@ -181,7 +181,7 @@ def spread(
 def ranking(
     table: pd.DataFrame, measure: str, by: Iterable[str] = ("caps", "motion")
 ) -> pd.DataFrame:
-    """Rank the methods by a measure of `trials`, a row per value of `by`.
+    """Rank the methods by a measure of `trials`.
 
     order   the methods by their mean over starts and rates, the least first
     wins    in what share of the trials the first has less than the second: 1 is a clear verdict,
@@ -215,7 +215,7 @@ def claims(
     times: Mapping[str, float],
     arrivals: Mapping[str, float],
 ) -> pd.DataFrame:
-    """Hold sentences about the methods against the numbers, a row each.
+    """Hold claims about the methods against the numbers.
 
     table     of `trials`
     reach     {motion: (k,)} of `reachable_throughout`, in the thesis's order: feet, then hands

@@ -69,7 +69,7 @@ def _options(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
 
 
 def prepare(course: Course, wanted: Path | None) -> Path:
-    """Give the folder to open: the clone's own notebooks, or a copy."""
+    """Give the folder to open, a clone's or a copy."""
     notebooks = course.notebooks.resolve()
     default = notebooks if course.clone else Path("ikteach-course")
     folder = Path(os.path.realpath(os.path.expanduser(wanted or default)))
@@ -95,7 +95,10 @@ def _command(folder: Path, first: str, port: int | None, extra: list[str]) -> li
 
 
 def environment(course: Course) -> dict[str, str]:
-    """Give the environment of a server; kernels of a clone find its package."""
+    """Give the environment of a server.
+
+    Kernels of a clone find its package.
+    """
     clone = str(delivery.PACKAGE.parent) if course.clone else ""
     ours = {"JUPYTER_CONFIG_PATH": str(SETTINGS), "PYTHONPATH": clone}
     paths = {name: [path, os.environ.get(name, "")] for name, path in ours.items()}

@@ -24,7 +24,7 @@ ROOM = "IKTEACH_ROOM"  # set for the kernels when others than the lecturer may o
 
 
 def main(argv: list[str]) -> int:
-    """Show the live figures as web pages, until Ctrl-C; give the exit code."""
+    """Show live figures as web pages; give the exit code."""
     options, extra = _options(argv)
     ports.check("Voilà", "voila", "lecture", options.port)
     os.environ.update(lab.environment(find_course()))
@@ -81,7 +81,10 @@ def _show(options: argparse.Namespace, extra: list[str]) -> int:
 
 
 def workbench() -> "Workbench":
-    """Make the workbench of a page; in a room, without files."""
+    """Make the workbench of a page.
+
+    Where others operate it, it keeps no files.
+    """
     from ikteach.view.chapters.workbench import Workbench
 
     bench = Workbench()
@@ -91,7 +94,10 @@ def workbench() -> "Workbench":
 
 
 def own_address() -> str:
-    """Find the address of this machine in its network, sending nothing."""
+    """Find the address of this machine in its network.
+
+    Nothing is sent to find it.
+    """
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
             probe.connect(("192.0.2.1", 9))  # an address that is nobody's: a route is looked up

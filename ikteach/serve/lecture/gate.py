@@ -33,7 +33,7 @@ class Message(NamedTuple):
 
 
 def read(frame: bytes | str) -> Message:
-    """Read a frame, or raise ValueError with the reason why it is none."""
+    """Read a frame; ValueError says why it is none."""
     if isinstance(frame, str):
         raise ValueError("it is text, where the protocol has binary frames")
     if len(frame) > FRAME:
@@ -74,9 +74,10 @@ def _depth(value: object) -> int:
 
 
 def permitted(message: Message) -> bool:
-    """Whether the message may reach the kernel: it moves or asks for widgets that are there.
+    """Decide whether the message may reach the kernel.
 
-    So no code runs that the page does not have, and no widget is made that it has not made.
+    It may if it moves or asks for widgets that are there. So no code runs that the page does not
+    have, and no widget is made that it has not made.
     """
     kind = message.header.get("msg_type")
     opens = kind == "comm_open" and message.content.get("target_name") != STATES
@@ -84,7 +85,7 @@ def permitted(message: Message) -> bool:
 
 
 class Allowance:
-    """What a visitor may spend: so much per second, and what was saved up in some seconds.
+    """An amount per second, and some seconds' worth saved up.
 
     rate   per second
     saved  seconds' worth that can be spent at once
