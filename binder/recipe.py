@@ -25,7 +25,7 @@ class Recipe(NamedTuple):
 
 
 def recipe(repository: Path) -> Recipe:
-    """What repo2docker would build of a folder: it prints that, and needs no Docker to do so."""
+    """Ask repo2docker what it would build of a folder, without Docker."""
     command = [sys.executable, "-m", "repo2docker", "--no-build", "--debug", str(repository)]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     python = re.search(r"python=([\d.]+)", done.stderr)
@@ -36,7 +36,7 @@ def recipe(repository: Path) -> Recipe:
 
 
 def clone(source: Path, folder: Path) -> None:
-    """A clean clone of what is committed, on a branch of its own."""
+    """Clone what is committed, on a branch of its own."""
     for command in (
         ["git", "clone", "--quiet", str(source), str(folder)],
         ["git", "-C", str(folder), "switch", "--quiet", "--force-create", "main"],
@@ -117,5 +117,5 @@ class Build:
 
 
 def told(command: list[str]) -> str:
-    """What a command prints."""
+    """Run a command, and give what it prints."""
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()

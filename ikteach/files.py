@@ -167,7 +167,7 @@ def _check_sound(content: Any) -> None:
 # Writing.
 
 
-def plain(value: Any) -> Any:
+def jsonable(value: Any) -> Any:
     """Make a value that every reader of JSON reads.
 
     Without NaN, and in Python's own types. Arrays become lists, and what JSON does not know becomes
@@ -176,9 +176,9 @@ def plain(value: Any) -> Any:
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if isinstance(value, dict):
-        return {bounded(str(name)): plain(one) for name, one in value.items()}
+        return {bounded(str(name)): jsonable(one) for name, one in value.items()}
     if isinstance(value, list | tuple):
-        return [plain(one) for one in value]
+        return [jsonable(one) for one in value]
     if isinstance(value, bool) or value is None:
         return value
     if isinstance(value, int | float) and abs(value) < 1e300:  # neither NaN nor infinite
@@ -299,7 +299,7 @@ def _patiently(act: Callable[[], T]) -> T:
 
 
 def _said(error: OSError, path: Path, done: str) -> OSError:
-    """The same error, of Python's own kind, as a sentence."""
+    """Make the same error, of Python's own kind, with a sentence."""
     kind = next(one for one in type(error).__mro__ if one.__module__ == "builtins")
     assert issubclass(kind, OSError)
     return kind(f"{bounded(path.name, 80)} cannot be {done} ({error.strerror or error})")

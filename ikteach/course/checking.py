@@ -28,7 +28,7 @@ import numpy as np
 from ikteach.course import record
 from ikteach.course.deadline import TooLongError, deadline
 from ikteach.course.notice import LOOK, Mood, box, paragraph
-from ikteach.course.untouched import Unpatched, untouched
+from ikteach.course.untouched import Unpatched, restoring
 from ikteach.files import bounded
 from ikteach.markup import Markup
 from ikteach.names import unknown
@@ -173,7 +173,7 @@ def judge(task: Exercise, answer: Any) -> Verdict:
         return Verdict(task.key, passed, bounded(" ".join(sentence.split()), LONGEST))
 
     try:
-        with untouched(), deadline(task.seconds):
+        with restoring(), deadline(task.seconds):
             if answer is None or answer is ...:
                 raise NotYetError
             task.checker(_value(task, answer) if task.value else _function(task, answer, name))
@@ -191,7 +191,7 @@ def judge(task: Exercise, answer: Any) -> Verdict:
 
 
 def _name(answer: Any, other: str) -> str:
-    """What a function calls itself, if that is a name."""
+    """Find what a function calls itself, if that is a name."""
     try:
         name = answer.__name__
     except Exception:
@@ -213,8 +213,8 @@ class Answer:
         self.call = f"{name}()"
 
     def __call__(self, *arguments: Any) -> Any:
-        """The answer to these arguments, which stay as they are."""
-        self.call = f"{self.name}({', '.join(map(brief, arguments))})"
+        """Answer these arguments, which stay as they are."""
+        self.call = f"{self.name}({', '.join(map(_brief, arguments))})"
         given = copy.deepcopy(arguments)
         try:
             result = self._run(given)
@@ -237,7 +237,7 @@ class Answer:
 
     def error(self, *arguments: Any) -> Exception | None:
         """Give what the function raises, or None if it returns."""
-        self.call = f"{self.name}({', '.join(map(brief, arguments))})"
+        self.call = f"{self.name}({', '.join(map(_brief, arguments))})"
         try:
             result = self._run(copy.deepcopy(arguments))
         except (NotYetError, WrongError):
@@ -249,7 +249,7 @@ class Answer:
         return None
 
     def _run(self, given: Sequence[Any]) -> Any:
-        """What the function returns; of exceptions it raises those that are errors, or ours."""
+        """Call the function; raise of its exceptions errors and ours."""
         try:
             with Unpatched():
                 return self._function(*given)
@@ -319,7 +319,7 @@ def of_form(result: Any, wanted: Any, said: str) -> Any:
     return array
 
 
-def brief(value: Any) -> str:
+def _brief(value: Any) -> str:
     """Tell a value in few words, for a sentence."""
     if isinstance(value, np.ndarray) and value.size > 4:
         return f"array {value.shape}"
@@ -334,7 +334,7 @@ def _kind(value: Any) -> str:
 
 
 def _type(value: Any) -> str:
-    """The name of its type: the true one, whatever its class says of itself."""
+    """Name its type, the true one, whatever its class says."""
     return bounded(type.__dict__["__name__"].__get__(type(value)) or "nameless type", 60)
 
 
@@ -343,7 +343,7 @@ def _a(name: str) -> str:
 
 
 def _said(error: BaseException) -> str:
-    """What was raised and its first line, bounded."""
+    """Say what was raised and its first line, bounded."""
     try:
         text = str(error).strip()
     except Exception:
@@ -352,7 +352,7 @@ def _said(error: BaseException) -> str:
 
 
 def _told(error: BaseException) -> str:
-    """What was raised and in which line of the student's, without a traceback."""
+    """Say what was raised, and in which line of the student's."""
     every = traceback.extract_tb(error.__traceback__)
     frames = [frame for frame in every if frame.filename != __file__]  # but our own calls
     theirs = [frame for frame in frames if frame.filename == frames[0].filename]

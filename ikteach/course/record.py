@@ -143,19 +143,19 @@ def _add(answers: Answers, kind: str, key: str, fields: Entry, again: bool) -> E
     known = group.get(key, {})
     tries = {"tries": known.get("tries", 0) + 1} if again else {}
     now = datetime.now(UTC).isoformat(timespec="seconds")
-    new = {name: _brief(files.plain(value)) for name, value in fields.items()}
+    new = {name: _brief(files.jsonable(value)) for name, value in fields.items()}
     group[key] = known | new | tries | {"at": now}
     return group[key]
 
 
 def _brief(value: Any) -> Any:
-    """A value as it is, or what a file that is written anew at each answer can hold of it."""
+    """Shorten what a file written anew at each answer cannot hold."""
     text = value if isinstance(value, str) else json.dumps(value)
     return value if len(text) <= LONGEST else files.bounded(text, LONGEST)
 
 
 def _read(folder: Path, *, set_aside: bool = False) -> tuple[Answers, str]:
-    """The answers of the file and of memory, and a sentence if the file is no good."""
+    """Read the answers of the file and of memory, and any trouble."""
     path, answers, trouble = folder / FILE, {}, ""
     try:
         answers = valid(files.read_json(path, MOST))

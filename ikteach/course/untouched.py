@@ -22,7 +22,7 @@ PRINTED = 10_000  # letters that a check may print
 
 
 @contextmanager
-def untouched() -> Iterator[None]:
+def restoring() -> Iterator[None]:
     """Restore, when the block ends, the session as it was.
 
     That is the working directory, the environment, the import path, the streams, the states of
@@ -35,7 +35,7 @@ def untouched() -> Iterator[None]:
     folder = None
     with suppress(OSError):  # of one that is gone
         folder = os.getcwd()
-    sys.stdout, sys.stderr = Quiet(sys.stdout), Quiet(sys.stderr)
+    sys.stdout, sys.stderr = Bounded(sys.stdout), Bounded(sys.stderr)
     try:
         with np.printoptions():
             yield
@@ -76,7 +76,7 @@ class Unpatched:
         self._inside.close()
 
 
-class Quiet(io.TextIOBase):
+class Bounded(io.TextIOBase):
     """Passes text on until it becomes too much."""
 
     def __init__(self, to: Any) -> None:

@@ -112,7 +112,7 @@ def writing(
     """
     av = library()
     path = Path(path)
-    kind = check(path, size=size, rate=rate, overwrite=overwrite)
+    kind = kind_of(path, size=size, rate=rate, overwrite=overwrite)
     with (
         drafted(path, overwrite=overwrite) as draft,
         av.open(str(draft), "w", format=path.suffix[1:].lower()) as container,
@@ -120,7 +120,7 @@ def writing(
         yield from _into(container, kind, size, Fraction(rate).limit_denominator(1001))
 
 
-def check(
+def kind_of(
     path: str | os.PathLike[str], *, size: tuple[int, int], rate: float, overwrite: bool = False
 ) -> Kind:
     """Choose how the movie will be made, or refuse.
@@ -238,7 +238,7 @@ def _into(
 
 
 def _palette(av: Any, stream: Any, rate: Fraction) -> Callable[[Any], Any]:
-    """A function that gives a frame the 256 colours that suit it best, for a GIF."""
+    """Make a function that gives a frame its 256 best colours."""
     graph = av.filter.Graph()
     source = graph.add_buffer(
         width=stream.width, height=stream.height, format=av.VideoFormat("rgb24"), time_base=1 / rate

@@ -83,12 +83,12 @@ def load(path: str | os.PathLike[str]) -> Log:
     file, told = _told(path)
     try:
         rows = words.field(told, "rows", int)
-        facts = words.facts(told)
+        facts = words.log_facts(told)
         table = _table(file, told)
     except (ValueError, LookupError) as error:
         raise ValueError(f"{quoted(file.name)} is damaged: {bounded(str(error))}") from None
     try:
-        return numbers.read(table, rows, facts)
+        return numbers.read_log(table, rows, facts)
     except FileNotFoundError:
         raise FileNotFoundError(
             f"{quoted(file.name)} has its numbers in {quoted(table)}, which is missing"
@@ -106,7 +106,7 @@ def _pair(path: str | os.PathLike[str]) -> tuple[Path, Path]:
 
 
 def _told(path: str | os.PathLike[str]) -> tuple[Path, dict[str, Any]]:
-    """The JSON file that `path` means, and what it tells."""
+    """Read the JSON file that `path` means."""
     path = Path(path)
     file, _ = _pair(path)
     try:
@@ -129,7 +129,7 @@ def _told(path: str | os.PathLike[str]) -> tuple[Path, dict[str, Any]]:
 
 
 def _other(path: Path, file: Path) -> str:
-    """What a file is that has no settings of a session beside it."""
+    """Say what a file is that has no settings beside it."""
     try:
         read_text(path, MOST)
     except ValueError as error:
@@ -138,7 +138,7 @@ def _other(path: Path, file: Path) -> str:
 
 
 def _table(file: Path, told: dict[str, Any]) -> Path:
-    """The table of numbers, which lies beside the JSON file and nowhere else.
+    """Find the table of numbers, beside the JSON file and nowhere else.
 
     `written` is its name until it gets the one that it keeps, `numbers`.
     """
@@ -157,7 +157,7 @@ def _table(file: Path, told: dict[str, Any]) -> Path:
 
 
 def _unsettled(settings: Path) -> Path | None:
-    """The table of an earlier run that has not got the name that it was to keep."""
+    """Find the table of an earlier run that lacks its final name."""
     try:
         file, told = _told(settings)
         table = _table(file, told)

@@ -61,13 +61,17 @@ def rows(log: Log) -> Iterator[Iterable[Any]]:
         tick += [log.methods[log.shown[t]], *log.targets[t].ravel().tolist()]
         for i, method in enumerate(log.methods):
             yield [
-                *tick, method, int(log.capped[t, i]), *log.error[t, i].tolist(),
-                *log.theta[t, i].tolist(), *log.held[t, i].astype(int).tolist(),
-            ]  # fmt: skip
+                *tick,
+                method,
+                int(log.capped[t, i]),
+                *log.error[t, i].tolist(),
+                *log.theta[t, i].tolist(),
+                *log.held[t, i].astype(int).tolist(),
+            ]
 
 
 def _columns(table: Path, names: list[str], count: int) -> dict[str, list[Any]]:
-    """The columns of the table: text for methods, and finite numbers."""
+    """Read the columns: text for methods, and finite numbers."""
     text = read_text(table, MOST)
     if text[:4].lower() == "sep=":  # a spreadsheet tells of its delimiter
         text = text[text.find("\n") + 1 :]
@@ -113,7 +117,7 @@ def _columns(table: Path, names: list[str], count: int) -> dict[str, list[Any]]:
 
 
 def _first_line(text: str, names: list[str]) -> tuple[str, list[str]]:
-    """The delimiter that makes the most sense of the first line, and the names in that."""
+    """Find the delimiter that fits the first line, and its names."""
     lines = {}
     for delimiter in DELIMITERS:
         with suppress(csv.Error):
@@ -125,7 +129,7 @@ def _first_line(text: str, names: list[str]) -> tuple[str, list[str]]:
 
 
 def _number(text: str, delimiter: str) -> float:
-    """The number in a cell; NaN where there is none."""
+    """Read the number in a cell; NaN where there is none."""
     try:
         return float(text)
     except ValueError:
@@ -135,7 +139,7 @@ def _number(text: str, delimiter: str) -> float:
         return TRUTH.get(text.strip().upper(), math.nan)
 
 
-def read(table: Path, rows: int, facts: dict[str, Any]) -> Log:
+def read_log(table: Path, rows: int, facts: dict[str, Any]) -> Log:
     """Read the log of these facts from its table.
 
     Its rows must be every method of every tick in turn. ValueError says what in the table is wrong,
@@ -169,8 +173,12 @@ def read(table: Path, rows: int, facts: dict[str, Any]) -> Log:
         raise ValueError("the methods of one tick differ in their targets")
     return Log(
         tick=tick,
-        **{name: per_tick(name) for name in PER_TICK[1:-1]}, shown=per_tick("shown", np.int64),
-        targets=targets[:, 0], theta=all_of("theta.", (n,)), error=all_of("error.", (k,)),
+        **{name: per_tick(name) for name in PER_TICK[1:-1]},
+        shown=per_tick("shown", np.int64),
+        targets=targets[:, 0],
+        theta=all_of("theta.", (n,)),
+        error=all_of("error.", (k,)),
         capped=np.array(columns["capped"], dtype=bool).reshape(T, m),
-        held=all_of("held.", (n,), bool), **facts,
-    )  # fmt: skip
+        held=all_of("held.", (n,), bool),
+        **facts,
+    )

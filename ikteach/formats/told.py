@@ -10,7 +10,7 @@ import numpy as np
 
 from ikteach.arrays import frozen
 from ikteach.body import Effectors, Joint, Tree
-from ikteach.files import HALF, plain, quoted
+from ikteach.files import HALF, jsonable, quoted
 from ikteach.motion.live.log import Event, Log
 from ikteach.motion.live.session import in_words
 
@@ -33,9 +33,9 @@ def settings(log: Log) -> dict[str, Any]:
         "rows": len(log) * len(log.methods),
         "dt": log.dt,
         "methods": list(log.methods),
-        "settings": plain(in_words(log.settings)),
+        "settings": jsonable(in_words(log.settings)),
         "dropped": dict(log.dropped),
-        "events": [plain(in_words(event._asdict())) for event in log.events],
+        "events": [jsonable(in_words(event._asdict())) for event in log.events],
         "figure": {
             "joints": list(_joints(log.tree)),
             "effectors": {
@@ -49,7 +49,7 @@ def settings(log: Log) -> dict[str, Any]:
 
 
 def _joints(tree: Tree) -> Iterator[dict[str, Any]]:
-    """The rows of the tree; a limit that is not there is null, for JSON has no infinity."""
+    """Write the rows of the tree; an infinite limit is null in JSON."""
     for j, name in enumerate(tree.names):
         parent = tree.names[tree.parents[j]] if tree.parents[j] >= 0 else None
         limits = {
@@ -57,13 +57,18 @@ def _joints(tree: Tree) -> Iterator[dict[str, Any]]:
             for side in ("lower", "upper")
         }
         yield {
-            "name": name, "parent": parent, "offset": tree.offsets[j].tolist(),
-            "axis": tree.axes[j].tolist(), "slide": bool(tree.slide[j]), **limits,
-            "rest": float(tree.rest[j]), "mobility": float(tree.mobility[j]),
-        }  # fmt: skip
+            "name": name,
+            "parent": parent,
+            "offset": tree.offsets[j].tolist(),
+            "axis": tree.axes[j].tolist(),
+            "slide": bool(tree.slide[j]),
+            **limits,
+            "rest": float(tree.rest[j]),
+            "mobility": float(tree.mobility[j]),
+        }
 
 
-def facts(told: dict[str, Any]) -> dict[str, Any]:
+def log_facts(told: dict[str, Any]) -> dict[str, Any]:
     """Read all that `Log` needs beside its numbers.
 
     ValueError says what is missing or wrong.

@@ -78,7 +78,7 @@ def collect(folder: Path) -> Collected:
     return Collected(table, together, skipped)
 
 
-def summary(table: pd.DataFrame) -> pd.DataFrame:
+def summarise(table: pd.DataFrame) -> pd.DataFrame:
     """Summarise the answers, a row per question.
 
     How many answered, how many are right, what they said. Of a student who handed in several files
@@ -126,7 +126,7 @@ def main(argv: list[str]) -> int:
         raise RefusedError(f"There are no answers in {options.folder}.")
     count = found.table[["student", "file"]].nunique()
     print(f"{len(found.table)} answers of {count['student']} students in {count['file']} files")
-    print(_shown(summary(found.table).to_string()))
+    print(_shown(summarise(found.table).to_string()))
     for name, path in outputs.items():
         try:
             write_whole(path, harmless(getattr(found, name)).to_csv(index=False))
@@ -157,7 +157,7 @@ def _shown(text: str) -> str:
 
 
 def _files(folder: Path) -> Iterator[tuple[Path, str]]:
-    """The files that may hold answers, and a word on those that cannot."""
+    """Find the files that may hold answers, with any hindrance."""
     unreadable: list[OSError] = []
     for place, folders, names in os.walk(folder, onerror=unreadable.append):
         folders[:] = sorted(name for name in folders if not name.startswith("."))
@@ -192,20 +192,20 @@ def _right(kind: str, entry: dict[str, Any]) -> bool | None:
 
 
 def _cell(value: Any) -> Any:
-    """A value as it stands in a cell of the table."""
+    """Make a value fit for a cell of the table."""
     if isinstance(value, list | str):
         return words(value)
     return bounded(str(value)) if isinstance(value, dict) else value
 
 
 def _others(rows: list[dict[str, Any]]) -> list[str]:
-    """What was recorded beside the usual, in the order in which it turns up."""
+    """List further fields that were recorded, in order of appearance."""
     names = dict.fromkeys(name for row in rows for name in row)
     return [name for name in names if name not in FIRST][:COLUMNS]
 
 
 def _log(log: Any) -> pd.DataFrame | None:
-    """An exported log as a table; ValueError if it has another form."""
+    """Tabulate an exported log; ValueError if it has another form."""
     if log is None:
         return None
     match log:
@@ -222,7 +222,7 @@ def _fills(width: int, row: Any) -> bool:
 
 
 def _said(answers: pd.Series) -> str:
-    """The answers, the most frequent first; the median of numbers."""
+    """Tell the answers, the most frequent first, or their median."""
     known = answers.dropna()
     if known.empty:
         return ""

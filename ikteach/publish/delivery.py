@@ -20,7 +20,7 @@ Outcome = Literal["copied", "restored", "updated", "current", "kept"]
 Manifest = dict[str, str]
 
 
-class Course(NamedTuple):
+class CourseFolder(NamedTuple):
     """A folder of notebooks, of a clone or a wheel.
 
     In a clone one may work directly.
@@ -41,12 +41,12 @@ class Delivery(NamedTuple):
     beside: str = ""
 
 
-def find_course() -> Course:
+def find_course() -> CourseFolder:
     """Find the course: of the clone, or in the wheel."""
     clone = PACKAGE.parent
     if (clone / "pyproject.toml").is_file() and (clone / "notebooks").is_dir():
-        return Course(clone / "notebooks", clone=True)
-    return Course(PACKAGE / "notebooks", clone=False)
+        return CourseFolder(clone / "notebooks", clone=True)
+    return CourseFolder(PACKAGE / "notebooks", clone=False)
 
 
 def course_files(notebooks: Path) -> list[str]:

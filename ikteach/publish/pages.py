@@ -72,8 +72,9 @@ def page(path: Path, titles: Mapping[str, str]) -> str:
     for cell in notebook.cells:
         for output in cell.get("outputs", []):
             _still(output)
-    exporter = HTMLExporter(template_name="basic", exclude_input_prompt=True,
-                            exclude_output_prompt=True)  # fmt: skip
+    exporter = HTMLExporter(
+        template_name="basic", exclude_input_prompt=True, exclude_output_prompt=True
+    )
     exporter.register_filter("markdown2html", _markdown)
     exporter.register_filter("highlight_code", _highlight)
     body, _ = exporter.from_notebook_node(notebook)

@@ -32,9 +32,12 @@ CORE = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip
 LOCK = "pyodide-lock.json"
 KERNEL = "@jupyterlite/pyodide-kernel-extension"
 EXTENSIONS = (  # what a page needs to show the course's widgets, and the kernel
-    "@jupyter-widgets/jupyterlab-manager", "anywidget", "jupyter-threejs", "jupyterlab-datawidgets",
+    "@jupyter-widgets/jupyterlab-manager",
+    "anywidget",
+    "jupyter-threejs",
+    "jupyterlab-datawidgets",
     KERNEL,
-)  # fmt: skip
+)
 # The kernel's own packages; those named here are loaded while it starts, the rest when imported.
 START = ("micropip", "piplite", "ipykernel", "comm", "pyodide-kernel", "jedi", "ipython")
 STANDINS = ("ipykernel-6", "piplite", "pyodide_kernel", "widgetsnbextension-4")

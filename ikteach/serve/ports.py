@@ -29,7 +29,7 @@ def port_number(text: str) -> int:
     return int(text)
 
 
-def check(server: str, module: str, extra: str, port: int | None) -> None:
+def check_server(server: str, module: str, extra: str, port: int | None) -> None:
     """Refuse a server that lacks its package or port.
 
     module, extra  its module, and the extra of this package with which it is installed

@@ -31,7 +31,12 @@ def by_direction(
     max_angle = {k: v for k, v in options.items() if k == "max_angle"}
     found, f = directions(J, e, **max_angle), factors(J, e, sdls(J, e, **options))
     columns = {
-        "σ": found.sigma, "asked": found.alpha, "N": found.N, "M": found.M, "γ": found.gamma,
-        "f": f, "share": f * found.sigma,
-    }  # fmt: skip
+        "σ": found.sigma,
+        "asked": found.alpha,
+        "N": found.N,
+        "M": found.M,
+        "γ": found.gamma,
+        "f": f,
+        "share": f * found.sigma,
+    }
     return pd.DataFrame(columns, index=pd.RangeIndex(1, len(f) + 1, name="i"))

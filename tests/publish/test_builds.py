@@ -60,9 +60,9 @@ def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def builds_course(notebooks: Path) -> Any:
-    from ikteach.publish.delivery import Course
+    from ikteach.publish.delivery import CourseFolder
 
-    return Course(notebooks, clone=True)
+    return CourseFolder(notebooks, clone=True)
 
 
 SOLUTIONS = {"00.hand": "def hand(t, a):\n    return a"}

@@ -369,7 +369,7 @@ def test_clone_is_copied_into_a_named_folder(
 def test_kernels_of_a_clone_find_its_package(course: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTHONPATH", "before")
     monkeypatch.setattr(opening, "PACKAGE", course.parent)
-    in_wheel, in_clone = opening.Course(course, False), opening.Course(course, True)
+    in_wheel, in_clone = opening.CourseFolder(course, False), opening.CourseFolder(course, True)
     assert serve.environment(in_wheel)["PYTHONPATH"] == "before"
     paths = serve.environment(in_clone)["PYTHONPATH"].split(os.pathsep)
     assert paths == [str(course.parents[1]), "before"]

@@ -11,7 +11,7 @@ from urllib.parse import quote
 
 from ikteach import __version__
 from ikteach.publish import delivery
-from ikteach.publish.delivery import Course, chapters, deliver, find_course, told
+from ikteach.publish.delivery import CourseFolder, chapters, deliver, find_course, told
 from ikteach.publish.parser import Parser, RefusedError
 from ikteach.serve import ports
 
@@ -29,7 +29,7 @@ def main(argv: list[str]) -> int:
         width = max(map(len, titles))
         print(*(f"{name:{width}}  {title}" for name, title in titles.items()), sep="\n")
         return 0
-    ports.check("JupyterLab", "jupyterlab", "lab", options.port)
+    ports.check_server("JupyterLab", "jupyterlab", "lab", options.port)
     folder = prepare(course, options.folder)
     first = next(iter(titles))
     print(f"opening {folder / first} in JupyterLab; Ctrl-C here ends it", flush=True)
@@ -68,7 +68,7 @@ def _options(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
     return options, ["--no-browser"] * options.no_browser + extra
 
 
-def prepare(course: Course, wanted: Path | None) -> Path:
+def prepare(course: CourseFolder, wanted: Path | None) -> Path:
     """Give the folder to open, a clone's or a copy."""
     notebooks = course.notebooks.resolve()
     default = notebooks if course.clone else Path("ikteach-course")
@@ -94,7 +94,7 @@ def _command(folder: Path, first: str, port: int | None, extra: list[str]) -> li
     return command + extra
 
 
-def environment(course: Course) -> dict[str, str]:
+def environment(course: CourseFolder) -> dict[str, str]:
     """Give the environment of a server.
 
     Kernels of a clone find its package.

@@ -26,7 +26,7 @@ ROOM = "IKTEACH_ROOM"  # set for the kernels when others than the lecturer may o
 def main(argv: list[str]) -> int:
     """Show live figures as web pages; give the exit code."""
     options, extra = _options(argv)
-    ports.check("Voilà", "voila", "lecture", options.port)
+    ports.check_server("Voilà", "voila", "lecture", options.port)
     os.environ.update(lab.environment(find_course()))
     return _show(options, extra)
 

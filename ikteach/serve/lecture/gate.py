@@ -32,7 +32,7 @@ class Message(NamedTuple):
     content: dict[str, Any]
 
 
-def read(frame: bytes | str) -> Message:
+def read_frame(frame: bytes | str) -> Message:
     """Read a frame; ValueError says why it is none."""
     if isinstance(frame, str):
         raise ValueError("it is text, where the protocol has binary frames")
@@ -56,7 +56,7 @@ def split(frame: bytes) -> list[bytes]:
 
 
 def _object(part: bytes) -> dict[str, Any]:
-    """The JSON object that a part is, or ValueError."""
+    """Read a part that is a JSON object, or raise ValueError."""
     try:
         value = json.loads(part.decode())
         if isinstance(value, dict) and _depth(value) <= DEPTH:

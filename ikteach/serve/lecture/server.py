@@ -65,7 +65,7 @@ kernel on this machine (about 150 MB); they can move the figures and run no code
 goes over the network is not encrypted."""
 
 
-class Quiet(KernelSpecManager):
+class BoundedKernels(KernelSpecManager):
     """Kernels that are bounded, and tell of errors only.
 
     That one listens here is no news.
@@ -140,7 +140,7 @@ class Files(Told):
         raise HTTPError(404)
 
 
-class Page(Told, TornadoVoilaHandler):  # type: ignore[misc]
+class LecturePage(Told, TornadoVoilaHandler):  # type: ignore[misc]
     """A page, with the cookie that it shows when closed.
 
     So its kernel may end.
@@ -198,7 +198,7 @@ class Channels(Told, VoilaKernelWebsocketHandler):  # type: ignore[misc]
         if not self._paid(len(frame)):
             return
         try:
-            message = gate.read(frame)
+            message = gate.read_frame(frame)
         except ValueError as reason:
             self._turn_out(f"it sent a frame that is none: {reason}")
             return
@@ -270,7 +270,7 @@ class Door(HTTPServer):
 # served before somebody has looked at it. Pictures need none: a page holds those of its words.
 FILES = (TemplateStaticFileHandler, MultiStaticFileHandler, FileFindHandler, ThemesHandler)
 SERVED = {
-    TornadoVoilaHandler: Page,
+    TornadoVoilaHandler: LecturePage,
     VoilaKernelWebsocketHandler: Channels,
     KernelHandler: KernelHandler,
     VoilaShutdownKernelHandler: VoilaShutdownKernelHandler,
@@ -282,7 +282,7 @@ SETTINGS = {
         "allow_template_override": "NO",
         "allow_theme_override": "NO",
         "extension_allowlist": NEEDED,
-        "kernel_spec_manager_class": Quiet,
+        "kernel_spec_manager_class": BoundedKernels,
         "multi_kernel_manager_class": Kernels,
     },
     "MappingKernelManager": {"cull_interval": ASK_EVERY, "cull_idle_timeout": ALONE},
