@@ -34,12 +34,13 @@ MOST = 64 * 2**20  # [bytes] of the JSON file
 def save(
     path: str | os.PathLike[str], run: Log | Session, *, overwrite: bool = False
 ) -> tuple[Path, Path]:
-    """Write the run to <path>.json and <path>.csv; return both.
+    """Write the run to two files, and return both paths.
 
-    FileExistsError where one of them is there already, unless `overwrite`; ValueError for a run
-    that could not be read back; OSError where nothing can be written. The new run is there from the
-    moment on at which <path>.json is replaced, and until then the old one. If <path>.csv cannot be
-    replaced, as another program has it open, the numbers stay in a file named <path>-xxxxxxxx.csv.
+    They are <path>.json and <path>.csv. FileExistsError where one of them is there already, unless
+    `overwrite`; ValueError for a run that could not be read back; OSError where nothing can be
+    written. The new run is there from the moment on at which <path>.json is replaced, and until
+    then the old one. If <path>.csv cannot be replaced, as another program has it open, the numbers
+    stay in a file named <path>-xxxxxxxx.csv.
     """
     log = run.log() if isinstance(run, Session) else run
     words.check_writable(log)
