@@ -63,7 +63,7 @@ class Build:
             "REPO_DIR": str(self.home),
             "KERNEL_PYTHON_PREFIX": str(self.prefix),
             "PATH": f"{self.prefix / 'bin'}{os.pathsep}{os.environ['PATH']}",
-            "UV_CACHE_DIR": told([*UV, "cache", "dir"]),  # which is not in that home
+            "UV_CACHE_DIR": output([*UV, "cache", "dir"]),  # which is not in that home
         }
 
     def steps(self, pip: bool = False) -> Iterator[str]:
@@ -95,7 +95,7 @@ class Build:
         environment = os.environ | {"PYENV_VERSION": python}
         if subprocess.run([*make, python], env=environment, capture_output=True).returncode != 0:
             subprocess.run([*make, sys.executable], check=True)
-        return told([str(self.prefix / "bin" / "python"), "-V"])
+        return output([str(self.prefix / "bin" / "python"), "-V"])
 
     def _copy(self, what: str) -> None:
         start, end = (Path(word) for word in what.replace("${REPO_DIR}", str(self.home)).split())
@@ -116,6 +116,6 @@ class Build:
         return done.stdout
 
 
-def told(command: list[str]) -> str:
+def output(command: list[str]) -> str:
     """Run a command, and give what it prints."""
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()

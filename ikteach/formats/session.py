@@ -1,6 +1,6 @@
 """A session as two files: settings, figure and events in JSON, the numbers of every tick in CSV.
 
-Both can be read by eye and by any program; `told` and `table` know what stands in them.
+Both can be read by eye and by any program; `description` and `table` know their contents.
 """
 
 import csv
@@ -22,8 +22,8 @@ from ikteach.files import (
     taken,
     write_whole,
 )
+from ikteach.formats import description
 from ikteach.formats import table as numbers
-from ikteach.formats import told as words
 from ikteach.motion.live.log import Log
 from ikteach.motion.live.session import Session
 
@@ -43,7 +43,7 @@ def save(
     stay in a file named <path>-xxxxxxxx.csv.
     """
     log = run.log() if isinstance(run, Session) else run
-    words.check_writable(log)
+    description.check_writable(log)
     settings, table = _pair(path)
     if not settings.parent.is_dir():
         raise FileNotFoundError(f"there is no folder {quoted(settings.parent)} to save in")
@@ -52,7 +52,7 @@ def save(
             raise taken(file)
     fresh = table.with_name(f"{table.stem[:50]}-{token_hex(4)}.csv")
     head = {"format": FORMAT, "version": VERSION, "numbers": table.name, "written": fresh.name}
-    content = json.dumps(head | words.settings(log), indent=1, ensure_ascii=False) + "\n"
+    content = json.dumps(head | description.describe(log), indent=1, ensure_ascii=False) + "\n"
     before = _unsettled(settings)
     try:
         with drafted(fresh) as draft, draft.open("w", newline="", encoding="utf-8") as out:
@@ -81,11 +81,11 @@ def load(path: str | os.PathLike[str]) -> Log:
     made of it. FileNotFoundError and ValueError say which file is missing, of another kind, or what
     in it is wrong; OSError where it cannot be read.
     """
-    file, told = _told(path)
+    file, given = _described(path)
     try:
-        rows = words.field(told, "rows", int)
-        facts = words.log_facts(told)
-        table = _table(file, told)
+        rows = description.field(given, "rows", int)
+        facts = description.log_facts(given)
+        table = _table(file, given)
     except (ValueError, LookupError) as error:
         raise ValueError(f"{quoted(file.name)} is damaged: {bounded(str(error))}") from None
     try:
@@ -106,12 +106,12 @@ def _pair(path: str | os.PathLike[str]) -> tuple[Path, Path]:
     return stem.with_name(f"{stem.name}.json"), stem.with_name(f"{stem.name}.csv")
 
 
-def _told(path: str | os.PathLike[str]) -> tuple[Path, dict[str, Any]]:
+def _described(path: str | os.PathLike[str]) -> tuple[Path, dict[str, Any]]:
     """Read the JSON file that `path` means."""
     path = Path(path)
     file, _ = _pair(path)
     try:
-        told = read_json(file, MOST)
+        given = read_json(file, MOST)
     except FileNotFoundError:
         if os.path.isfile(path):
             raise ValueError(
@@ -121,12 +121,12 @@ def _told(path: str | os.PathLike[str]) -> tuple[Path, dict[str, Any]]:
     except ValueError as error:
         raise ValueError(f"{quoted(file.name)} is not a session: {error}") from None
     name = quoted(file.name)
-    if not isinstance(told, dict) or told.get("format") != FORMAT:
+    if not isinstance(given, dict) or given.get("format") != FORMAT:
         raise ValueError(f"{name} is not a session: it does not say 'format': {FORMAT!r}")
-    if told.get("version") != VERSION:
-        version = quoted(told.get("version"))
+    if given.get("version") != VERSION:
+        version = quoted(given.get("version"))
         raise ValueError(f"{name} is of version {version}, and this reads {VERSION}")
-    return file, told
+    return file, given
 
 
 def _other(path: Path, file: Path) -> str:
@@ -138,12 +138,12 @@ def _other(path: Path, file: Path) -> str:
     return f"there is no {quoted(file.name)} beside it, which `save` would have written"
 
 
-def _table(file: Path, told: dict[str, Any]) -> Path:
+def _table(file: Path, given: dict[str, Any]) -> Path:
     """Find the table of numbers, beside the JSON file and nowhere else.
 
     `written` is its name until it gets the one that it keeps, `numbers`.
     """
-    for name in (told.get("written", ""), words.field(told, "numbers", str)):
+    for name in (given.get("written", ""), description.field(given, "numbers", str)):
         if name == "" or not isinstance(name, str):
             continue
         if re.search(r"[/\\:\0]", name) or name in (".", "..") or len(name.encode()) > 255:
@@ -160,8 +160,8 @@ def _table(file: Path, told: dict[str, Any]) -> Path:
 def _unsettled(settings: Path) -> Path | None:
     """Find the table of an earlier run that lacks its final name."""
     try:
-        file, told = _told(settings)
-        table = _table(file, told)
-        return table if table.name == told.get("written") else None
+        file, given = _described(settings)
+        table = _table(file, given)
+        return table if table.name == given.get("written") else None
     except (OSError, ValueError):
         return None

@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from ikteach.publish.delivery import chapters, course_files, deliver, find_course, told
+from ikteach.publish.delivery import chapters, course_files, deliver, find_course, report
 from ikteach.publish.parser import Parser, RefusedError
 
 MARK = re.compile(r"^# %% (\S+)\n", re.MULTILINE)
@@ -46,7 +46,7 @@ def main(argv: list[str]) -> int:
             raise RefusedError(f"{error.name} is not installed: {install}") from None
         except LookupError as error:
             raise RefusedError(str(error)) from None
-        print(*told(deliver(Path(made), folder), folder), sep="\n")
+        print(*report(deliver(Path(made), folder), folder), sep="\n")
     return 0
 
 

@@ -111,7 +111,7 @@ def deliver(notebooks: Path, folder: Path) -> list[Delivery]:
     return deliveries
 
 
-def told(deliveries: list[Delivery], folder: Path) -> list[str]:
+def report(deliveries: list[Delivery], folder: Path) -> list[str]:
     """Tell what was done, a sentence each.
 
     New files are counted, all others are named.

@@ -28,7 +28,7 @@ from hypothesis import strategies as st
 
 from ikteach import __main__ as cli
 from ikteach.publish import delivery as opening
-from ikteach.publish.delivery import MANIFEST, Delivery, chapters, deliver, find_course, told
+from ikteach.publish.delivery import MANIFEST, Delivery, chapters, deliver, find_course, report
 from ikteach.serve import lab as serve
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -102,7 +102,7 @@ def test_first_copy_has_everything_but_what_is_hidden(course: Path, home: Path) 
     assert outcomes(deliveries) == dict.fromkeys([GAIT, STUDY, "data/walk.csv"], "copied")
     assert set(tree(home)) == {GAIT, STUDY, "data/walk.csv", MANIFEST}
     assert (home / GAIT).read_bytes() == (course / GAIT).read_bytes()
-    assert told(deliveries, home) == [f"copied 2 notebooks to {home}, other files: 1"]
+    assert report(deliveries, home) == [f"copied 2 notebooks to {home}, other files: 1"]
 
 
 def test_second_copy_writes_nothing(course: Path, home: Path) -> None:
@@ -110,7 +110,7 @@ def test_second_copy_writes_nothing(course: Path, home: Path) -> None:
     before = {path: path.stat() for path in home.rglob("*")}
     deliveries = deliver(course, home)
     assert set(outcomes(deliveries).values()) == {"current"}
-    assert told(deliveries, home) == [f"nothing new for {home}"]
+    assert report(deliveries, home) == [f"nothing new for {home}"]
     after = {path: path.stat() for path in home.rglob("*")}
     assert {p: (s.st_ino, s.st_mtime_ns) for p, s in after.items() if p.is_file()} == {
         p: (s.st_ino, s.st_mtime_ns) for p, s in before.items() if p.is_file()
@@ -123,7 +123,7 @@ def test_changed_file_is_kept(course: Path, home: Path) -> None:
     deliveries = deliver(course, home)
     assert (home / GAIT).read_text() == "mine"
     assert set(tree(home)) == {GAIT, STUDY, "data/walk.csv", MANIFEST}  # our version is not newer
-    assert told(deliveries, home) == [f"kept yours: {GAIT}"]
+    assert report(deliveries, home) == [f"kept yours: {GAIT}"]
 
 
 def test_unchanged_file_is_updated(course: Path, home: Path) -> None:
@@ -131,7 +131,7 @@ def test_unchanged_file_is_updated(course: Path, home: Path) -> None:
     (course / GAIT).write_text("second edition")
     deliveries = deliver(course, home)
     assert (home / GAIT).read_text() == "second edition"
-    assert told(deliveries, home) == [f"updated: {GAIT}"]
+    assert report(deliveries, home) == [f"updated: {GAIT}"]
 
 
 def test_deleted_file_is_restored(course: Path, home: Path) -> None:
@@ -140,13 +140,13 @@ def test_deleted_file_is_restored(course: Path, home: Path) -> None:
     shutil.rmtree(home / "data")
     deliveries = deliver(course, home)
     assert tree(home)[GAIT] == (course / GAIT).read_bytes()
-    assert told(deliveries, home) == [f"restored: {GAIT}", "restored: data/walk.csv"]
+    assert report(deliveries, home) == [f"restored: {GAIT}", "restored: data/walk.csv"]
 
 
 def test_new_chapter_is_copied_and_counted(course: Path, home: Path) -> None:
     deliver(course, home)
     (course / "09_workbench.ipynb").write_text(notebook("# Workbench"))
-    assert told(deliver(course, home), home) == [f"copied 1 notebook to {home}"]
+    assert report(deliver(course, home), home) == [f"copied 1 notebook to {home}"]
 
 
 def test_newer_version_goes_beside_a_changed_file_once(course: Path, home: Path) -> None:
@@ -156,11 +156,11 @@ def test_newer_version_goes_beside_a_changed_file_once(course: Path, home: Path)
     deliveries = deliver(course, home)
     assert (home / GAIT).read_text() == "mine"
     assert (home / "07_gait.new.ipynb").read_text() == "second edition"
-    assert told(deliveries, home) == [
+    assert report(deliveries, home) == [
         f"kept yours: {GAIT}; the newer version is beside it: 07_gait.new.ipynb"
     ]
     (home / "07_gait.new.ipynb").unlink()  # read and thrown away: not brought back
-    assert told(deliver(course, home), home) == [f"kept yours: {GAIT}"]
+    assert report(deliver(course, home), home) == [f"kept yours: {GAIT}"]
     assert not (home / "07_gait.new.ipynb").exists()
 
 
@@ -180,13 +180,13 @@ def test_changed_version_beside_is_kept(course: Path, home: Path) -> None:
     (home / "07_gait.new.ipynb").write_text("mine too")
     (course / GAIT).write_text("second edition")
     for _ in range(2):
-        assert told(deliver(course, home), home) == [
+        assert report(deliver(course, home), home) == [
             f"kept yours: {GAIT}",
             "kept yours: 07_gait.new.ipynb",
         ]
     assert (home / "07_gait.new.ipynb").read_text() == "mine too"
     (home / "07_gait.new.ipynb").unlink()  # there is room now, and the edition is still owed
-    assert "beside" in told(deliver(course, home), home)[0]
+    assert "beside" in report(deliver(course, home), home)[0]
     assert (home / "07_gait.new.ipynb").read_text() == "second edition"
 
 

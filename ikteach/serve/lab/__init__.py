@@ -11,7 +11,7 @@ from urllib.parse import quote
 
 from ikteach import __version__
 from ikteach.publish import delivery
-from ikteach.publish.delivery import CourseFolder, chapters, deliver, find_course, told
+from ikteach.publish.delivery import CourseFolder, chapters, deliver, find_course, report
 from ikteach.publish.parser import Parser, RefusedError
 from ikteach.serve import ports
 
@@ -77,7 +77,7 @@ def prepare(course: CourseFolder, wanted: Path | None) -> Path:
         return folder
     if folder.is_relative_to(notebooks):
         raise OSError(errno.EINVAL, "A copy cannot go among the originals", str(folder))
-    print(*told(deliver(notebooks, folder), folder), sep="\n")
+    print(*report(deliver(notebooks, folder), folder), sep="\n")
     return folder
 
 

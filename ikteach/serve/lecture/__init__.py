@@ -10,7 +10,7 @@ import socket
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ikteach.publish.delivery import deliver, find_course, told
+from ikteach.publish.delivery import deliver, find_course, report
 from ikteach.publish.parser import Parser, RefusedError
 from ikteach.serve import lab, ports
 
@@ -66,7 +66,7 @@ def _show(options: argparse.Namespace, extra: list[str]) -> int:
         mend = "pip install --upgrade 'ikteach[lecture]'"
         raise RefusedError(f"{why} Mend it with: {mend}") from None
     folder = options.folder.expanduser().resolve()
-    print(*told(deliver(PAGES, folder), folder), sep="\n")
+    print(*report(deliver(PAGES, folder), folder), sep="\n")
     os.environ.pop(ROOM, None)
     if options.room:
         os.environ[ROOM] = "1"

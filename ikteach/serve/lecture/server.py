@@ -117,7 +117,7 @@ class Kernels(AsyncMappingKernelManager):
         self._kernel_buffers[kernel_id]["buffer"] = deque(maxlen=BUFFERED)
 
 
-class Told:
+class PlainErrors:
     """Tells of an error in a sentence.
 
     Jupyter's own page of errors is not among what is served.
@@ -129,7 +129,7 @@ class Told:
         self.finish(getattr(exc_info[1], "log_message", None) or self._reason)
 
 
-class Files(Told):
+class Files(PlainErrors):
     """Files of installed packages, by paths that lead down."""
 
     def parse_url_path(self, url_path: str) -> str:
@@ -140,7 +140,7 @@ class Files(Told):
         raise HTTPError(404)
 
 
-class LecturePage(Told, TornadoVoilaHandler):  # type: ignore[misc]
+class LecturePage(PlainErrors, TornadoVoilaHandler):  # type: ignore[misc]
     """A page, with the cookie that it shows when closed.
 
     So its kernel may end.
@@ -154,7 +154,7 @@ class LecturePage(Told, TornadoVoilaHandler):  # type: ignore[misc]
         await super().get(path)
 
 
-class Channels(Told, VoilaKernelWebsocketHandler):  # type: ignore[misc]
+class Channels(PlainErrors, VoilaKernelWebsocketHandler):  # type: ignore[misc]
     """The socket between a page and its kernel.
 
     Who sends what is no message is turned out.

@@ -1,4 +1,4 @@
-"""What the JSON file of a session tells: written so that every reader can read it, read checked."""
+"""The description of a session in its JSON file: readable by every reader, read checked."""
 
 import math
 from collections import Counter
@@ -27,8 +27,8 @@ KINDS: dict[type, str] = {
 EVENT = {"run": int, "tick": int, "time": float, "kind": str, "what": dict}
 
 
-def settings(log: Log) -> dict[str, Any]:
-    """Tell all of a run but its numbers."""
+def describe(log: Log) -> dict[str, Any]:
+    """Describe all of a run but its numbers."""
     return {
         "rows": len(log) * len(log.methods),
         "dt": log.dt,
@@ -68,23 +68,23 @@ def _joints(tree: Tree) -> Iterator[dict[str, Any]]:
         }
 
 
-def log_facts(told: dict[str, Any]) -> dict[str, Any]:
+def log_facts(given: dict[str, Any]) -> dict[str, Any]:
     """Read all that `Log` needs beside its numbers.
 
     ValueError says what is missing or wrong.
     """
-    tree, effectors = _figure(field(told, "figure", dict))
-    dt = field(told, "dt", float)
+    tree, effectors = _figure(field(given, "figure", dict))
+    dt = field(given, "dt", float)
     if dt <= 0:
         raise ValueError(f"'dt' is {dt}, and must be more than 0")
     return {
         "tree": tree,
         "effectors": effectors,
         "dt": dt,
-        "methods": names("method", field(told, "methods", list)),
-        "events": tuple(map(_event, field(told, "events", list))),
-        "settings": field(told, "settings", dict),
-        "dropped": _dropped(field(told, "dropped", dict)),
+        "methods": names("method", field(given, "methods", list)),
+        "events": tuple(map(_event, field(given, "events", list))),
+        "settings": field(given, "settings", dict),
+        "dropped": _dropped(field(given, "dropped", dict)),
     }
 
 
@@ -106,11 +106,11 @@ def _of_kind(value: Any, kind: type, what: str) -> Any:
     return value
 
 
-def field(told: dict[str, Any], name: str, kind: type, of: str = "") -> Any:
+def field(given: dict[str, Any], name: str, kind: type, of: str = "") -> Any:
     """Give the value of that name and kind, or refuse."""
-    if name not in told:
+    if name not in given:
         raise ValueError(f"{name!r}{of} is missing")
-    return _of_kind(told[name], kind, f"{name!r}{of}")
+    return _of_kind(given[name], kind, f"{name!r}{of}")
 
 
 def names(what: str, names: list[Any]) -> tuple[str, ...]:
@@ -136,47 +136,47 @@ def _vector(value: Any, what: str) -> tuple[float, ...]:
     return tuple(_of_kind(one, float, what) for one in value)
 
 
-def _event(told: Any) -> Event:
+def _event(given: Any) -> Event:
     of = " of an event"
-    told = _of_kind(told, dict, "an event")
-    event = Event(*(field(told, name, kind, of) for name, kind in EVENT.items()))
+    given = _of_kind(given, dict, "an event")
+    event = Event(*(field(given, name, kind, of) for name, kind in EVENT.items()))
     if event.run < 0 or event.tick < 0:
         raise ValueError(f"'run' and 'tick'{of} must not be negative")
     return event
 
 
-def _dropped(told: dict[str, Any]) -> dict[str, int]:
-    dropped = {what: field(told, what, int, " in 'dropped'") for what in ("ticks", "events")}
+def _dropped(given: dict[str, Any]) -> dict[str, int]:
+    dropped = {what: field(given, what, int, " in 'dropped'") for what in ("ticks", "events")}
     if min(dropped.values()) < 0:
         raise ValueError("the numbers in 'dropped' must not be negative")
     return dropped
 
 
-def _joint(told: Any) -> Joint:
-    name = field(_of_kind(told, dict, "a joint"), "name", str, " of a joint")
+def _joint(given: Any) -> Joint:
+    name = field(_of_kind(given, dict, "a joint"), "name", str, " of a joint")
     of = f" of {quoted(name)}"
     limits = {
-        side: field(told, side, float, of)
+        side: field(given, side, float, of)
         for side in ("lower", "upper")
-        if told.get(side, 0.0) is not None
+        if given.get(side, 0.0) is not None
     }
-    parent = None if told.get("parent", "") is None else field(told, "parent", str, of)
+    parent = None if given.get("parent", "") is None else field(given, "parent", str, of)
     return Joint(
         name,
         parent,
-        offset=_vector(told.get("offset"), f"'offset'{of}"),
-        axis=_vector(told.get("axis"), f"'axis'{of}"),
-        slide=field(told, "slide", bool, of),
-        rest=field(told, "rest", float, of),
-        mobility=field(told, "mobility", float, of),
+        offset=_vector(given.get("offset"), f"'offset'{of}"),
+        axis=_vector(given.get("axis"), f"'axis'{of}"),
+        slide=field(given, "slide", bool, of),
+        rest=field(given, "rest", float, of),
+        mobility=field(given, "mobility", float, of),
         **limits,
     )
 
 
-def _figure(told: dict[str, Any]) -> tuple[Tree, Effectors]:
+def _figure(given: dict[str, Any]) -> tuple[Tree, Effectors]:
     of = " of the figure"
-    rows = [_joint(one) for one in field(told, "joints", list, of)]
-    points = field(told, "effectors", dict, of)
+    rows = [_joint(one) for one in field(given, "joints", list, of)]
+    points = field(given, "effectors", dict, of)
     names("joint", [row.name for row in rows])
     names("effector", list(points))
     tree = Tree.of(rows)
