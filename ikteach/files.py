@@ -23,7 +23,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 Name = str | os.PathLike[str]
-T = TypeVar("T")
+Result = TypeVar("Result")
 
 DEEPEST = 60  # levels of lists and dictionaries in a file that we read
 LEFT_BEHIND = 3600.0  # [s] a draft that nobody has touched for so long is nobody's
@@ -286,7 +286,7 @@ def _sweep(path: Path) -> None:
                         os.unlink(entry)
 
 
-def _patiently(act: Callable[[], T]) -> T:
+def _patiently(act: Callable[[], Result]) -> Result:
     """Do it; on Windows again for a while, where another program has the file open just now."""
     end = time.monotonic() + 1.0
     while True:
@@ -340,7 +340,7 @@ def alone(path: Name) -> Iterator[None]:
         os.close(file)
 
 
-def _wait(act: Callable[[], T], path: Path) -> T:
+def _wait(act: Callable[[], Result], path: Path) -> Result:
     """Try until no other process is in the way."""
     end = time.monotonic() + PATIENCE
     while True:

@@ -35,10 +35,10 @@ from ikteach.names import unknown
 
 NOT_YET = "Not yet"
 SECONDS = 5.0  # what a check may take in all
-LONGEST = 500  # letters of a sentence
+LONGEST_SENTENCE = 500  # letters of a sentence
 
-Shape = tuple[int, ...]
-Returns = Shape | type | Callable[..., Shape] | None
+AnswerShape = tuple[int, ...]
+Returns = AnswerShape | type | Callable[..., AnswerShape] | None
 
 
 class WrongError(Exception):
@@ -170,7 +170,7 @@ def judge(task: Exercise, answer: Any) -> Verdict:
     name = _name(answer, task.key.partition(".")[2])
 
     def verdict(passed: bool, sentence: str) -> Verdict:
-        return Verdict(task.key, passed, bounded(" ".join(sentence.split()), LONGEST))
+        return Verdict(task.key, passed, bounded(" ".join(sentence.split()), LONGEST_SENTENCE))
 
     try:
         with restoring(), deadline(task.seconds):
@@ -303,7 +303,7 @@ def of_form(result: Any, wanted: Any, said: str) -> Any:
         return result
     form = f"an array of shape {wanted}" if wanted else "one number"
     try:
-        array = np.asarray(result)
+        array = np.asarray(None if isinstance(result, str) else result)  # a text may be long
         if array.dtype.kind not in "biuf":  # text, complex numbers, objects
             raise TypeError
     except Exception:  # whatever an object of the student's raises when it is to be an array

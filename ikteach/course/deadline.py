@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 AGAIN = 0.1  # [s] until a timer that was swallowed by a bare `except:` comes again
 AT_ONCE = 1e-4  # [s] the same, when it has been swallowed some times
-PATIENCE = 3  # times
+SWALLOWED = 3  # times
 
 OLD = sys.version_info < (3, 12)  # `while True: pass` in one line is then a line but once
 SOUND = ("ikteach.", "numpy.")  # modules without such a line
@@ -79,7 +79,7 @@ class Timer:
         if not _may_stop(frame):
             return
         self._rung += 1
-        if self._rung == PATIENCE:  # so often that one comes between an `except:` and the next try
+        if self._rung == SWALLOWED:  # so often that one comes between an `except:` and the next try
             signal.setitimer(signal.ITIMER_REAL, AT_ONCE, AT_ONCE)
         raise TooLongError
 

@@ -16,15 +16,15 @@ from ikteach import files
 from ikteach.course.notice import Notice
 
 FILE = "predictions.json"
-KINDS = ("predictions", "verdicts", "quiz")
+ANSWER_KINDS = ("predictions", "verdicts", "quiz")
 KEPT = "your answers are kept until the kernel stops."
-MOST = 50 * 2**20  # bytes of a file of answers; an exported log may be in it
-MANY = 5000  # answers of a kind
+LARGEST_ANSWERS = 50 * 2**20  # bytes of a file of answers; an exported log may be in it
+MOST_ANSWERS = 5000  # answers of a kind
 FIELDS = 100  # of an answer
-LONGEST = 2000  # letters of a field
+LONGEST_FIELD = 2000  # letters of a field
 
 Entry = dict[str, Any]
-Answers = dict[str, dict[str, Entry]]  # kind (one of KINDS) -> key -> entry
+Answers = dict[str, dict[str, Entry]]  # kind (one of ANSWER_KINDS) -> key -> entry
 
 _lock = RLock()  # widgets may call from another thread
 _unsaved: dict[Path, Answers] = {}  # what could not be written, per folder
@@ -102,7 +102,7 @@ def export(path: str | os.PathLike[str], log: Any = None, *, overwrite: bool = F
     except (ValueError, OverflowError, RecursionError) as error:
         why = files.bounded(str(error))
         return Notice(f"Nothing written: `log` cannot be put into a file ({why}).", "bad")
-    content = {**{kind: answers.get(kind, {}) for kind in KINDS}, "log": table}
+    content = {**{kind: answers.get(kind, {}) for kind in ANSWER_KINDS}, "log": table}
     try:
         files.write_whole(target, _json(content), overwrite=overwrite)
     except FileExistsError:
@@ -110,7 +110,7 @@ def export(path: str | os.PathLike[str], log: Any = None, *, overwrite: bool = F
         return Notice(f"{path} exists already and was left alone: {hint}.", "bad")
     except OSError as error:
         return Notice(f"{files.bounded(str(path))} could not be written: {error}.", "bad")
-    counts = ", ".join(f"{len(answers.get(kind, {}))} {kind}" for kind in KINDS)
+    counts = ", ".join(f"{len(answers.get(kind, {}))} {kind}" for kind in ANSWER_KINDS)
     rows = f", a log of {len(log)} rows" if log is not None else ""
     return Notice(f"Written to {path}: {counts}{rows}. {trouble}".strip(), "good")
 
@@ -122,9 +122,9 @@ def valid(answers: Any) -> Answers:
     """
     if not isinstance(answers, dict):
         raise ValueError("it holds no answers of this course")
-    for kind in KINDS:
+    for kind in ANSWER_KINDS:
         group = answers.get(kind, {})
-        if not isinstance(group, dict) or len(group) > MANY:
+        if not isinstance(group, dict) or len(group) > MOST_ANSWERS:
             raise ValueError(f"its {kind} have a form that is not ours")
         for key, one in group.items():
             if not isinstance(one, dict) or len(one) > FIELDS or not _fit(one):
@@ -151,14 +151,14 @@ def _add(answers: Answers, kind: str, key: str, fields: Entry, again: bool) -> E
 def _brief(value: Any) -> Any:
     """Shorten what a file written anew at each answer cannot hold."""
     text = value if isinstance(value, str) else json.dumps(value)
-    return value if len(text) <= LONGEST else files.bounded(text, LONGEST)
+    return value if len(text) <= LONGEST_FIELD else files.bounded(text, LONGEST_FIELD)
 
 
 def _read(folder: Path, *, set_aside: bool = False) -> tuple[Answers, str]:
     """Read the answers of the file and of memory, and any trouble."""
     path, answers, trouble = folder / FILE, {}, ""
     try:
-        answers = valid(files.read_json(path, MOST))
+        answers = valid(files.read_json(path, LARGEST_ANSWERS))
     except FileNotFoundError:
         pass
     except ValueError:  # not JSON, not UTF-8, or JSON of something else

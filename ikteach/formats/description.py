@@ -14,9 +14,9 @@ from ikteach.files import HALF, jsonable, quoted
 from ikteach.motion.live.log import Event, Log
 from ikteach.motion.live.session import in_words
 
-LONGEST = 200  # letters of a name
-MOST = {"method": 200, "effector": 1000, "joint": 2000}  # of each in a file
-KINDS: dict[type, str] = {
+LONGEST_NAME = 200  # letters of a name
+MOST_NAMES = {"method": 200, "effector": 1000, "joint": 2000}  # of each in a file
+JSON_KINDS: dict[type, str] = {
     dict: "names with their values",
     list: "a list",
     str: "text",
@@ -102,7 +102,7 @@ def _of_kind(value: Any, kind: type, what: str) -> Any:
     if kind is float and type(value) is int:
         value = float(value)
     if type(value) is not kind:
-        raise ValueError(f"{what} is {quoted(value)}, not {KINDS[kind]}")
+        raise ValueError(f"{what} is {quoted(value)}, not {JSON_KINDS[kind]}")
     return value
 
 
@@ -118,12 +118,14 @@ def names(what: str, names: list[Any]) -> tuple[str, ...]:
 
     Each is text, and there once.
     """
-    if not 0 < len(names) <= MOST[what]:
-        raise ValueError(f"there are {len(names)} {what}s, and from 1 to {MOST[what]:,} can be")
+    if not 0 < len(names) <= MOST_NAMES[what]:
+        raise ValueError(
+            f"there are {len(names)} {what}s, and from 1 to {MOST_NAMES[what]:,} can be"
+        )
     for name in names:
-        if not (isinstance(name, str) and 0 < len(name) <= LONGEST) or HALF.search(name):
+        if not (isinstance(name, str) and 0 < len(name) <= LONGEST_NAME) or HALF.search(name):
             raise ValueError(
-                f"{quoted(name)} is no name of a {what}: text of up to {LONGEST} letters"
+                f"{quoted(name)} is no name of a {what}: text of up to {LONGEST_NAME} letters"
             )
     if twice := [name for name, count in Counter(names).items() if count > 1]:
         raise ValueError(f"there are two {what}s called {quoted(twice[0])}")

@@ -28,7 +28,7 @@ from ikteach.motion.live.log import Log
 from ikteach.motion.live.session import Session
 
 FORMAT, VERSION = "ikteach session", 1
-MOST = 64 * 2**20  # [bytes] of the JSON file
+LARGEST_JSON = 64 * 2**20  # [bytes] of the JSON file
 
 
 def save(
@@ -57,7 +57,7 @@ def save(
     try:
         with drafted(fresh) as draft, draft.open("w", newline="", encoding="utf-8") as out:
             csv.writer(out).writerows(numbers.rows(log))
-        if fresh.stat().st_size > numbers.MOST or len(content.encode()) > MOST:
+        if fresh.stat().st_size > numbers.LARGEST_TABLE or len(content.encode()) > LARGEST_JSON:
             raise ValueError(
                 "the run is too large to be read back: save its last ticks, log(last=…)"
             )
@@ -111,7 +111,7 @@ def _described(path: str | os.PathLike[str]) -> tuple[Path, dict[str, Any]]:
     path = Path(path)
     file, _ = _pair(path)
     try:
-        given = read_json(file, MOST)
+        given = read_json(file, LARGEST_JSON)
     except FileNotFoundError:
         if os.path.isfile(path):
             raise ValueError(
@@ -132,7 +132,7 @@ def _described(path: str | os.PathLike[str]) -> tuple[Path, dict[str, Any]]:
 def _other(path: Path, file: Path) -> str:
     """Say what a file is that has no settings beside it."""
     try:
-        read_text(path, MOST)
+        read_text(path, LARGEST_JSON)
     except ValueError as error:
         return str(error)
     return f"there is no {quoted(file.name)} beside it, which `save` would have written"

@@ -20,7 +20,7 @@ from ikteach.files import quoted, read_text
 from ikteach.motion.live.log import Log
 
 PER_TICK = ("tick", "time", "phase", "advance", "floor", "shown")  # columns before "method"
-MOST = 512 * 2**20  # [bytes]
+LARGEST_TABLE = 512 * 2**20  # [bytes]
 LAST_TICK = 2**53  # a float still counts them
 DELIMITERS = ",;\t"  # of our own tables, and of spreadsheets in other languages
 TRUTH = {"TRUE": 1.0, "FALSE": 0.0}  # as spreadsheets like to write
@@ -72,7 +72,7 @@ def rows(log: Log) -> Iterator[Iterable[Any]]:
 
 def _columns(table: Path, names: list[str], count: int) -> dict[str, list[Any]]:
     """Read the columns: text for methods, and finite numbers."""
-    text = read_text(table, MOST)
+    text = read_text(table, LARGEST_TABLE)
     if text[:4].lower() == "sep=":  # a spreadsheet tells of its delimiter
         text = text[text.find("\n") + 1 :]
     delimiter, found = _first_line(text, names)

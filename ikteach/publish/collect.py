@@ -16,24 +16,24 @@ from typing import Any, NamedTuple
 import pandas as pd
 
 from ikteach.course.questions import words
-from ikteach.course.record import KINDS, MOST, valid
+from ikteach.course.record import ANSWER_KINDS, LARGEST_ANSWERS, valid
 from ikteach.files import bounded, read_json, whole_characters, write_whole
 from ikteach.publish.parser import Parser, RefusedError
 
-NAMES = dict(zip(KINDS, ("prediction", "exercise", "quiz"), strict=True))
+NAMES = dict(zip(ANSWER_KINDS, ("prediction", "exercise", "quiz"), strict=True))
 SKIPPED = 3  # the exit code when all went well, but for files that were left out
 COLUMNS = 200  # of a log, and of the table
 SAID = 8  # answers that the summary names
 # Where a spreadsheet takes a text for a formula: at its beginning, and after what may begin a cell.
 FORMULA = re.compile(r"(^|(?<=[\t\r\n;,|]))(?=\s*[=+\-@＝＋－＠])|^(?=[\t\r\n])")
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
-FIRST = ["student", "file", "kind", "key", "answer", "result", "right", "tries", "late", "at"]
+LEADING = ["student", "file", "kind", "key", "answer", "result", "right", "tries", "late", "at"]
 
 
 class Collected(NamedTuple):
     """What was found.
 
-    table    a row for each student, file, kind and key: `FIRST`, then whatever else was recorded;
+    table    a row for each student, file, kind and key: `LEADING`, then whatever else was recorded;
              `right` is None for a number that was predicted, and where no result was shown
     logs     the exported logs, one below the other, with student and file in front
     skipped  {file: why it, or its log, was left out}
@@ -58,8 +58,8 @@ def collect(folder: Path) -> Collected:
         try:
             if hindrance:
                 raise ValueError(hindrance)
-            content = valid(read_json(path, MOST))
-            if not content.keys() & set(KINDS):
+            content = valid(read_json(path, LARGEST_ANSWERS))
+            if not content.keys() & set(ANSWER_KINDS):
                 raise ValueError("it holds no answers of this course")
             found = [row | who for row in _rows(content)]
         except (OSError, ValueError) as error:
@@ -73,7 +73,7 @@ def collect(folder: Path) -> Collected:
         else:
             if log is not None:
                 logs.append(pd.concat([pd.DataFrame(who, index=log.index), log], axis=1))
-    table = pd.DataFrame(rows, columns=[*FIRST, *_others(rows)], dtype=object)
+    table = pd.DataFrame(rows, columns=[*LEADING, *_others(rows)], dtype=object)
     together = pd.concat(logs, ignore_index=True) if logs else pd.DataFrame()
     return Collected(table, together, skipped)
 
@@ -176,7 +176,7 @@ def _files(folder: Path) -> Iterator[tuple[Path, str]]:
 
 
 def _rows(content: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    for kind in KINDS:
+    for kind in ANSWER_KINDS:
         for key, entry in content.get(kind, {}).items():
             fields = {bounded(name, 60): _cell(value) for name, value in entry.items()}
             yield fields | {"kind": NAMES[kind], "key": key, "right": _right(kind, entry)}
@@ -201,7 +201,7 @@ def _cell(value: Any) -> Any:
 def _others(rows: list[dict[str, Any]]) -> list[str]:
     """List further fields that were recorded, in order of appearance."""
     names = dict.fromkeys(name for row in rows for name in row)
-    return [name for name in names if name not in FIRST][:COLUMNS]
+    return [name for name in names if name not in LEADING][:COLUMNS]
 
 
 def _log(log: Any) -> pd.DataFrame | None:

@@ -14,7 +14,7 @@ from ikteach.files import read_json, write_whole
 
 PACKAGE = Path(__file__).resolve().parents[1]
 MANIFEST = ".ikteach.json"
-MOST = 100 * 2**20  # bytes of a notebook, outputs and all
+LARGEST_NOTEBOOK = 100 * 2**20  # bytes of a notebook, outputs and all
 
 Outcome = Literal["copied", "restored", "updated", "current", "kept"]
 Manifest = dict[str, str]
@@ -73,7 +73,7 @@ def title(notebook: Path) -> str:
     The first `# ` heading of its first markdown cell; empty where there is none.
     """
     try:
-        cells = read_json(notebook, MOST)["cells"]
+        cells = read_json(notebook, LARGEST_NOTEBOOK)["cells"]
         prose = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "markdown"]
     except (OSError, ValueError, KeyError, TypeError):
         return "(not a readable notebook)"
@@ -160,7 +160,7 @@ def read_manifest(folder: Path) -> Manifest:
     Empty where it is missing or damaged.
     """
     try:
-        manifest = read_json(folder / MANIFEST, MOST)
+        manifest = read_json(folder / MANIFEST, LARGEST_NOTEBOOK)
         return {name: digest for name, digest in manifest.items() if isinstance(digest, str)}
     except (FileNotFoundError, ValueError, AttributeError):
         return {}  # then every file that differs counts as the student's, and is kept

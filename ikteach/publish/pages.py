@@ -16,7 +16,7 @@ from pygments.formatters import HtmlFormatter
 from ikteach.markup import Markup
 
 WIDGET = "application/vnd.jupyter.widget-view+json"
-STYLE = """
+PAGE_STYLE = """
 :root { color-scheme: light; }
 body { font: 17px/1.55 system-ui, sans-serif; color: #16202a; background: #fff;
   max-width: 52rem; margin: 0 auto; padding: 1rem 1.2rem 4rem; }
@@ -115,7 +115,7 @@ def document(title: str, body: Markup) -> Markup:
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         "<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n{}\n</body>\n</html>\n"
-    ).format(title, Markup(STYLE), Markup(_colours()), body)
+    ).format(title, Markup(PAGE_STYLE), Markup(_colours()), body)
 
 
 def _colours() -> str:

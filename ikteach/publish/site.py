@@ -39,9 +39,9 @@ EXTENSIONS = (  # what a page needs to show the course's widgets, and the kernel
     KERNEL,
 )
 # The kernel's own packages; those named here are loaded while it starts, the rest when imported.
-START = ("micropip", "piplite", "ipykernel", "comm", "pyodide-kernel", "jedi", "ipython")
+PRELOADED = ("micropip", "piplite", "ipykernel", "comm", "pyodide-kernel", "jedi", "ipython")
 STANDINS = ("ipykernel-6", "piplite", "pyodide_kernel", "widgetsnbextension-4")
-PATIENCE = 60  # [s] without a byte
+TIMEOUT = 60  # [s] without a byte
 
 
 class Size(NamedTuple):
@@ -184,7 +184,7 @@ def distribution(where: str, folder: Path, kernel: Path) -> list[str]:
         if wheel.name.startswith(STANDINS):
             ours.append(Path(shutil.copy(wheel, folder)))
     python = whole["info"]["python"]
-    chosen = wheels.lock(whole["packages"], ours, START, folder, python)
+    chosen = wheels.lock(whole["packages"], ours, PRELOADED, folder, python)
     wanted = {one["file_name"]: one["sha256"] for one in chosen.values()}
     wanted = {name: sha256 for name, sha256 in wanted.items() if not (folder / name).exists()}
     if not is_address(where):
@@ -218,7 +218,7 @@ def take(where: str, name: str) -> bytes:
     try:
         if not is_address(where):
             return Path(where, name).read_bytes()
-        with urllib.request.urlopen(f"{where.rstrip('/')}/{name}", timeout=PATIENCE) as answer:
+        with urllib.request.urlopen(f"{where.rstrip('/')}/{name}", timeout=TIMEOUT) as answer:
             return bytes(answer.read())
     except OSError as error:  # of files and of the network
         reason = getattr(error, "reason", None) or error.strerror or error
@@ -258,7 +258,7 @@ def _extension(name: str, kernel: Path) -> Path:
 def lay_out(project: Path, made: Path, kernel: Path) -> None:
     """Have JupyterLite lay out the site `made` from the project."""
     settings = {
-        "loadPyodideOptions": {"packages": list(START)},
+        "loadPyodideOptions": {"packages": list(PRELOADED)},
         "disablePyPIFallback": True,  # what is not in the site is asked of nobody
     }
     page = {

@@ -13,7 +13,7 @@ from ikteach.__main__ import main
 from ikteach.course import export, predict, quiz, record, reveal
 from ikteach.course.record import store
 from ikteach.course.widget import Question
-from ikteach.publish.collect import FIRST, SKIPPED, collect, harmless, summarise
+from ikteach.publish.collect import LEADING, SKIPPED, collect, harmless, summarise
 
 OPTIONS = ["fewer", "more"]
 
@@ -49,7 +49,7 @@ def handed_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_every_answer_is_a_row(handed_in: Path) -> None:
     table, logs, skipped = collect(handed_in)
     assert skipped == {}
-    assert list(table.columns[: len(FIRST)]) == FIRST
+    assert list(table.columns[: len(LEADING)]) == LEADING
     assert len(table) == 8
     answers = table.pivot(index="key", columns="student", values="answer")
     assert answers.loc["03.half"].to_dict() == {"ada": "more", "bo": "fewer"}

@@ -17,7 +17,7 @@ from typing import Any
 
 from ikteach.publish import site, wheels
 
-WANTED = [*site.START, "typing-extensions", "numpy", "pandas", "matplotlib"]
+WANTED = [*site.PRELOADED, "typing-extensions", "numpy", "pandas", "matplotlib"]
 
 
 def core(folder: Path) -> None:

@@ -15,7 +15,7 @@ from ikteach.publish.delivery import CourseFolder, chapters, deliver, find_cours
 from ikteach.publish.parser import Parser, RefusedError
 from ikteach.serve import ports
 
-SETTINGS = Path(__file__).parent  # where JupyterLab does not ask a beginner whether they want news
+QUIET = Path(__file__).parent  # where JupyterLab does not ask a beginner whether they want news
 
 
 def main(argv: list[str]) -> int:
@@ -100,7 +100,7 @@ def environment(course: CourseFolder) -> dict[str, str]:
     Kernels of a clone find its package.
     """
     clone = str(delivery.PACKAGE.parent) if course.clone else ""
-    ours = {"JUPYTER_CONFIG_PATH": str(SETTINGS), "PYTHONPATH": clone}
+    ours = {"JUPYTER_CONFIG_PATH": str(QUIET), "PYTHONPATH": clone}
     paths = {name: [path, os.environ.get(name, "")] for name, path in ours.items()}
     joined = {name: os.pathsep.join(filter(None, both)) for name, both in paths.items()}
     return os.environ | {name: path for name, path in joined.items() if path}

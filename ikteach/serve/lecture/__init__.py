@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from ikteach.view.chapters.workbench import Workbench
 
 PAGES = Path(__file__).parent / "pages"
-FIRST = "workbench.ipynb"
+FIRST_PAGE = "workbench.ipynb"
 FOLDER = Path("ikteach-lecture")
-ROOM = "IKTEACH_ROOM"  # set for the kernels when others than the lecturer may open pages
+OPEN_TO_ROOM = "IKTEACH_ROOM"  # set for the kernels when others than the lecturer may open pages
 
 
 def main(argv: list[str]) -> int:
@@ -67,12 +67,12 @@ def _show(options: argparse.Namespace, extra: list[str]) -> int:
         raise RefusedError(f"{why} Mend it with: {mend}") from None
     folder = options.folder.expanduser().resolve()
     print(*report(deliver(PAGES, folder), folder), sep="\n")
-    os.environ.pop(ROOM, None)
+    os.environ.pop(OPEN_TO_ROOM, None)
     if options.room:
-        os.environ[ROOM] = "1"
+        os.environ[OPEN_TO_ROOM] = "1"
     browse = not options.no_browser
     try:
-        lecture = Lecture.of(folder, FIRST, options.port, room=options.room, browse=browse)
+        lecture = Lecture.of(folder, FIRST_PAGE, options.port, room=options.room, browse=browse)
         lecture.initialize(extra)
         lecture.start()
     except KeyboardInterrupt:  # before it serves: then it hears of it itself
@@ -88,7 +88,7 @@ def workbench() -> "Workbench":
     from ikteach.view.chapters.workbench import Workbench
 
     bench = Workbench()
-    if os.environ.get(ROOM):
+    if os.environ.get(OPEN_TO_ROOM):
         bench.keep_no_files()
     return bench
 

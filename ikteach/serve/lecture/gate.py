@@ -15,10 +15,10 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 PROTOCOL = "v1.kernel.websocket.jupyter.org"
-KINDS = ["comm_open", "comm_msg", "comm_close", "comm_info_request", "kernel_info_request"]
+PERMITTED = ["comm_open", "comm_msg", "comm_close", "comm_info_request", "kernel_info_request"]
 STATES = "jupyter.widget.control"  # the one comm that a page opens: to ask for all widgets' states
 FRAME = 2**20  # bytes
-PARTS = range(5, 22)  # channel, four of JSON, and up to 16 buffers
+PART_COUNTS = range(5, 22)  # channel, four of JSON, and up to 16 buffers
 DEPTH = 32  # of lists and objects in one another
 
 
@@ -46,7 +46,7 @@ def split(frame: bytes) -> list[bytes]:
     """Split a frame into its parts, or raise ValueError."""
     n = int.from_bytes(frame[:8], "little")
     start = 8 * (n + 1)
-    if n - 1 not in PARTS or len(frame) < start:
+    if n - 1 not in PART_COUNTS or len(frame) < start:
         raise ValueError(f"it claims {n:.3g} offsets in {len(frame)} bytes")
     offsets = struct.unpack_from(f"<{n}Q", frame, 8)
     ascending = all(a <= b for a, b in pairwise(offsets))
@@ -81,7 +81,7 @@ def permitted(message: Message) -> bool:
     """
     kind = message.header.get("msg_type")
     opens = kind == "comm_open" and message.content.get("target_name") != STATES
-    return message.channel == "shell" and kind in KINDS and not opens
+    return message.channel == "shell" and kind in PERMITTED and not opens
 
 
 class Allowance:

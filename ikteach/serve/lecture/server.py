@@ -39,9 +39,9 @@ from voila.tornado.kernel_websocket_handler import VoilaKernelWebsocketHandler
 from ikteach.serve import extension as server
 from ikteach.serve.lecture import PAGES, gate, own_address
 
-log = logging.getLogger(__name__)
-LOOK = Path(__file__).parent / "look"
-KERNEL, LAUNCHER = Path(__file__).with_name("kernel.py"), "ipykernel_launcher"
+logger = logging.getLogger(__name__)
+TEMPLATES = Path(__file__).parent / "look"
+KERNEL_SCRIPT, LAUNCHER = Path(__file__).with_name("kernel.py"), "ipykernel_launcher"
 PORT = 8866
 ASK_EVERY, ALONE = 30, 120  # [s] how often kernels are looked at; how long one lives without a page
 OPEN_EACH, OPEN_ALL = 6, 30  # pages, each a kernel: of one visitor, of all; a visitor is an address
@@ -76,7 +76,7 @@ class BoundedKernels(KernelSpecManager):
         spec = super().get_kernel_spec(kernel_name)
         if LAUNCHER in spec.argv:  # after `-m`, for which -P stands: import nothing from FOLDER
             at = spec.argv.index(LAUNCHER)
-            spec.argv[at - 1 : at + 1] = ["-P", str(KERNEL)]
+            spec.argv[at - 1 : at + 1] = ["-P", str(KERNEL_SCRIPT)]
         spec.argv = [*spec.argv, "--log-level=ERROR"]
         # Matrices of a figure are small: more threads would only be in one another's way.
         spec.env = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"} | spec.env
@@ -228,7 +228,7 @@ class Channels(PlainErrors, VoilaKernelWebsocketHandler):  # type: ignore[misc]
         if self.turned_out:
             return
         self.turned_out = True
-        log.error("A socket of %s is closed: %s.", self.request.remote_ip, reason)
+        logger.error("A socket of %s is closed: %s.", self.request.remote_ip, reason)
         try:
             self.close(1008)  # which stands for a breach of the rules
         except StreamBufferFullError:
@@ -323,12 +323,12 @@ class Lecture(Voila):  # type: ignore[misc]
     def setup_template_dirs(self) -> None:
         """Our look goes before that of Voilà, which it extends."""
         super().setup_template_dirs()
-        self.template_paths.insert(0, str(LOOK))
+        self.template_paths.insert(0, str(TEMPLATES))
 
     def init_settings(self) -> dict[str, Any]:
         """Make the settings; frames go out in time."""
         settings = dict(super().init_settings())
-        self.kernel_manager.allowed_message_types = gate.KINDS
+        self.kernel_manager.allowed_message_types = gate.PERMITTED
         server._load_jupyter_server_extension(self)
         return settings | {"websocket_max_message_size": gate.FRAME}
 
