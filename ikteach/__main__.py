@@ -38,10 +38,7 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def misspelt(argv: list[str]) -> str:
-    """Explain a command that is unknown or stands elsewhere.
-
-    Empty where none is meant.
-    """
+    """Explain a misspelt command; empty where none is meant."""
     word = argv[0] if argv else ""
     late = [command for command in COMMANDS if command in argv and "--" not in argv]
     if late and word.startswith("-"):

@@ -62,10 +62,7 @@ def quoted(value: Any) -> str:
 
 
 def bounded(words: str, most: int = 400) -> str:
-    """Shorten a text to at most `most` letters.
-
-    What is too much is left out of its middle.
-    """
+    """Shorten a text to `most` letters, leaving out its middle."""
     half = (most - 3) // 2
     short = words if len(words) <= most else f"{words[:half]} … {words[-half:]}"
     return whole_characters(short)
@@ -191,10 +188,7 @@ def jsonable(value: Any) -> Any:
 
 
 def write_whole(path: Name, content: str | bytes, *, overwrite: bool = False) -> None:
-    """Write a file in one step.
-
-    FileExistsError if it is there, unless `overwrite`; OSError.
-    """
+    """Write a file in one step; FileExistsError unless `overwrite`."""
     with drafted(path, overwrite=overwrite) as draft:
         draft.write_bytes(content.encode() if isinstance(content, str) else content)
 

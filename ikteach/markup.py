@@ -19,10 +19,7 @@ class Markup(str):
     """
 
     def format(self, *values: Any, **named: Any) -> "Markup":
-        """Put values into the places of this template.
-
-        Numbers take formats, `{:.2f}`.
-        """
+        """Put values into this template; numbers take formats, `{:.2f}`."""
         safe = {name: _escaped(value) for name, value in named.items()}
         return Markup(super().format(*map(_escaped, values), **safe))
 

@@ -51,10 +51,7 @@ class NotYetError(Exception):
 
 @dataclass(frozen=True)
 class Verdict:
-    """The finding of a check, true only if it passed.
-
-    `hint` is empty when there is none to give.
-    """
+    """The finding of a check, true if passed; perhaps a hint."""
 
     key: str
     passed: bool
@@ -66,10 +63,7 @@ class Verdict:
 
     @property
     def mood(self) -> Mood:
-        """Choose how to set it.
-
-        An exercise that was not begun is no failure.
-        """
+        """Choose how to set it; not begun is no failure."""
         return "good" if self.passed else "plain" if self.sentence.startswith(NOT_YET) else "bad"
 
     def __str__(self) -> str:

@@ -46,10 +46,7 @@ def home() -> Path:
 
 
 def entries(kind: str) -> dict[str, Entry]:
-    """Read the entries of this kind, {key: entry}.
-
-    Changing it changes nothing.
-    """
+    """Read a copy of the entries of this kind, {key: entry}."""
     with _lock:
         answers, _ = _read(home())
         return answers.get(kind, {})
@@ -116,10 +113,7 @@ def export(path: str | os.PathLike[str], log: Any = None, *, overwrite: bool = F
 
 
 def valid(answers: Any) -> Answers:
-    """Check that answers have the form that we write.
-
-    ValueError says what has not.
-    """
+    """Check that answers have our form, or raise ValueError."""
     if not isinstance(answers, dict):
         raise ValueError("it holds no answers of this course")
     for kind in ANSWER_KINDS:

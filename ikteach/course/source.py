@@ -22,8 +22,5 @@ class Source:
 
 
 def source(thing: Callable[..., Any]) -> Source:
-    """Show the source of `thing`, as the package runs it.
-
-    TypeError for what has none in Python.
-    """
+    """Show the source of `thing`; TypeError if not in Python."""
     return Source(thing)

@@ -69,10 +69,7 @@ def _joints(tree: Tree) -> Iterator[dict[str, Any]]:
 
 
 def log_facts(given: dict[str, Any]) -> dict[str, Any]:
-    """Read all that `Log` needs beside its numbers.
-
-    ValueError says what is missing or wrong.
-    """
+    """Read what `Log` needs beside numbers, or raise ValueError."""
     tree, effectors = _figure(field(given, "figure", dict))
     dt = field(given, "dt", float)
     if dt <= 0:
@@ -114,10 +111,7 @@ def field(given: dict[str, Any], name: str, kind: type, of: str = "") -> Any:
 
 
 def names(what: str, names: list[Any]) -> tuple[str, ...]:
-    """Check the names of methods, joints or effectors.
-
-    Each is text, and there once.
-    """
+    """Check that each name is text, and there once."""
     if not 0 < len(names) <= MOST_NAMES[what]:
         raise ValueError(
             f"there are {len(names)} {what}s, and from 1 to {MOST_NAMES[what]:,} can be"

@@ -23,10 +23,7 @@ Pixels = npt.NDArray[np.uint8]  # (height, width, 3), red green blue
 
 
 class Kind(NamedTuple):
-    """Encoding of one sort of file.
-
-    `even`: its colours are kept for squares of 2 × 2 pixels.
-    """
+    """Encoding of a file; `even` wants sides of even length."""
 
     codec: str
     pixels: str

@@ -56,10 +56,7 @@ def student(notebooks: Path, folder: Path) -> None:
 
 
 def instructor(notebooks: Path, folder: Path) -> None:
-    """Copy the notebooks with solutions folded in.
-
-    LookupError where one is missing.
-    """
+    """Copy the notebooks with solutions, or raise LookupError."""
     _make(notebooks, folder, with_solutions)
 
 

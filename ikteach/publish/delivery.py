@@ -21,20 +21,14 @@ Manifest = dict[str, str]
 
 
 class CourseFolder(NamedTuple):
-    """A folder of notebooks, of a clone or a wheel.
-
-    In a clone one may work directly.
-    """
+    """A folder of notebooks; in a clone one works directly."""
 
     notebooks: Path
     clone: bool
 
 
 class Delivery(NamedTuple):
-    """The outcome for one file.
-
-    `beside` names the newer version put next to a kept one.
-    """
+    """Outcome for a file; `beside` names its newer version."""
 
     name: str
     outcome: Outcome
@@ -50,10 +44,7 @@ def find_course() -> CourseFolder:
 
 
 def course_files(notebooks: Path) -> list[str]:
-    """List all files of the course, relative, with `/`.
-
-    Nothing hidden, nobody's answers.
-    """
+    """List the course's files, without hidden ones and answers."""
     files = (path.relative_to(notebooks) for path in notebooks.rglob("*") if path.is_file())
     hidden = (".", "__pycache__", "predictions.")
     return sorted(
@@ -112,10 +103,7 @@ def deliver(notebooks: Path, folder: Path) -> list[Delivery]:
 
 
 def report(deliveries: list[Delivery], folder: Path) -> list[str]:
-    """Tell what was done, a sentence each.
-
-    New files are counted, all others are named.
-    """
+    """Tell what was done: new files counted, others named."""
     new = [delivery.name for delivery in deliveries if delivery.outcome == "copied"]
     count = sum(name.endswith(".ipynb") for name in new)
     others = f", other files: {len(new) - count}" if len(new) > count else ""
@@ -155,10 +143,7 @@ def _put(folder: Path, name: str, data: bytes, manifest: Manifest) -> Outcome:
 
 
 def read_manifest(folder: Path) -> Manifest:
-    """Read file name -> SHA-256 as last delivered.
-
-    Empty where it is missing or damaged.
-    """
+    """Read {name: SHA-256} as last delivered; empty if damaged."""
     try:
         manifest = read_json(folder / MANIFEST, LARGEST_NOTEBOOK)
         return {name: digest for name, digest in manifest.items() if isinstance(digest, str)}

@@ -25,10 +25,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def meant(word: str, known: Iterable[str]) -> str:
-    """Ask for the known word most like another.
-
-    Empty if none is like it.
-    """
+    """Ask for the known word most like another, or nothing."""
     plain = {name.lstrip("-"): name for name in known}
     word = word.partition("=")[0].lstrip("-").lower()
     close = difflib.get_close_matches(word, plain, n=1, cutoff=0.75)

@@ -119,10 +119,7 @@ def build(folder: Path, pyodide: str | None = None) -> Size:
 
 
 def hindrance(folder: Path) -> str:
-    """Say why nothing may be built there.
-
-    Empty if something may.
-    """
+    """Say why nothing may be built there, or nothing."""
     if not folder.exists():
         return ""
     if not folder.is_dir():
@@ -151,10 +148,7 @@ def contents(folder: Path) -> Manifest:
 
 
 def fetch_kernel(folder: Path) -> Path:
-    """Unpack JupyterLite's Python kernel into `folder`.
-
-    LookupError if it cannot be had.
-    """
+    """Unpack JupyterLite's Python kernel, or raise LookupError."""
     command = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
     command += ["--no-deps", "--target", str(folder), KERNEL_WHEEL]
     done = subprocess.run(command, capture_output=True, text=True)
@@ -211,10 +205,7 @@ def is_address(where: str) -> bool:
 
 
 def take(where: str, name: str) -> bytes:
-    """Read a file of Pyodide's, from folder or address.
-
-    LookupError if it is not there.
-    """
+    """Read a file of Pyodide's, or raise LookupError."""
     try:
         if not is_address(where):
             return Path(where, name).read_bytes()

@@ -35,10 +35,7 @@ class Metadata(NamedTuple):
 
 
 def own(package: Path, folder: Path) -> Path:
-    """Make the wheel of ikteach itself in `folder`.
-
-    Of a clone or as installed.
-    """
+    """Make the wheel of ikteach itself, of clone or installed."""
     clone = package.parent
     if not (clone / "pyproject.toml").is_file():
         return again("ikteach", folder)
@@ -48,10 +45,7 @@ def own(package: Path, folder: Path) -> Path:
 
 
 def again(name: str, folder: Path) -> Path:
-    """Make the wheel of an installed package again.
-
-    In `folder`; LookupError where none can be.
-    """
+    """Make an installed package's wheel again, or raise LookupError."""
     try:
         installed = distribution(name)
     except PackageNotFoundError:

@@ -95,10 +95,7 @@ def _command(folder: Path, first: str, port: int | None, extra: list[str]) -> li
 
 
 def environment(course: CourseFolder) -> dict[str, str]:
-    """Give the environment of a server.
-
-    Kernels of a clone find its package.
-    """
+    """Give a server's environment; kernels find a clone's package."""
     clone = str(delivery.PACKAGE.parent) if course.clone else ""
     ours = {"JUPYTER_CONFIG_PATH": str(QUIET), "PYTHONPATH": clone}
     paths = {name: [path, os.environ.get(name, "")] for name, path in ours.items()}

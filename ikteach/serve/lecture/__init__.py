@@ -81,10 +81,7 @@ def _show(options: argparse.Namespace, extra: list[str]) -> int:
 
 
 def workbench() -> "Workbench":
-    """Make the workbench of a page.
-
-    Where others operate it, it keeps no files.
-    """
+    """Make a page's workbench; in a room it keeps no files."""
     from ikteach.view.chapters.workbench import Workbench
 
     bench = Workbench()
@@ -94,10 +91,7 @@ def workbench() -> "Workbench":
 
 
 def own_address() -> str:
-    """Find the address of this machine in its network.
-
-    Nothing is sent to find it.
-    """
+    """Find this machine's address in its network, sending nothing."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
             probe.connect(("192.0.2.1", 9))  # an address that is nobody's: a route is looked up

@@ -66,10 +66,7 @@ goes over the network is not encrypted."""
 
 
 class BoundedKernels(KernelSpecManager):
-    """Kernels that are bounded, and tell of errors only.
-
-    That one listens here is no news.
-    """
+    """Kernels that are bounded, and tell of errors only."""
 
     def get_kernel_spec(self, kernel_name: str) -> KernelSpec:
         """Start the kernel of that name by `kernel.py`."""
@@ -118,10 +115,7 @@ class Kernels(AsyncMappingKernelManager):
 
 
 class PlainErrors:
-    """Tells of an error in a sentence.
-
-    Jupyter's own page of errors is not among what is served.
-    """
+    """Tells of an error in a sentence, without Jupyter's page."""
 
     def write_error(self: Any, status_code: int, exc_info: Any = (None, None), **_: Any) -> None:
         """Send the sentence of the error, or of its number."""
@@ -141,10 +135,7 @@ class Files(PlainErrors):
 
 
 class LecturePage(PlainErrors, TornadoVoilaHandler):  # type: ignore[misc]
-    """A page, with the cookie that it shows when closed.
-
-    So its kernel may end.
-    """
+    """A page, whose cookie lets its kernel end when closed."""
 
     async def get(self, path: str = "") -> None:
         """Send one of the lecture's own pages, figure by figure."""
@@ -155,10 +146,7 @@ class LecturePage(PlainErrors, TornadoVoilaHandler):  # type: ignore[misc]
 
 
 class Channels(PlainErrors, VoilaKernelWebsocketHandler):  # type: ignore[misc]
-    """The socket between a page and its kernel.
-
-    Who sends what is no message is turned out.
-    """
+    """The socket between a page and its kernel, guarded."""
 
     sockets: ClassVar[Counter[str]] = Counter()  # kernel -> how many are open, or opening
     turned_out = False
@@ -292,10 +280,7 @@ SETTINGS = {
 
 
 class Lecture(Voila):  # type: ignore[misc]
-    """Voilà on a folder of pages.
-
-    Only who has the token gets in; nobody sees code or files.
-    """
+    """Voilà on a folder of pages, for holders of the token."""
 
     first: str
     room: bool
@@ -351,10 +336,7 @@ class Lecture(Voila):  # type: ignore[misc]
         super().listen()
 
     def start(self) -> None:
-        """Serve until Ctrl-C.
-
-        That a page was closed while a frame was under way to it is no news.
-        """
+        """Serve until Ctrl-C, without news of pages closed early."""
         logging.getLogger("asyncio").addFilter(
             lambda record: not (record.exc_info and record.exc_info[0] is WebSocketClosedError)
         )
@@ -365,10 +347,7 @@ class Lecture(Voila):  # type: ignore[misc]
         super().start()
 
     def stop(self) -> None:
-        """End all kernels at once.
-
-        There is nothing of the visitors' to be kept.
-        """
+        """End all kernels at once; nothing is to be kept."""
         shutil.rmtree(self.connection_dir, ignore_errors=True)
         run_sync(self.kernel_manager.shutdown_all)(now=True)
 
