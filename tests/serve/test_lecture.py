@@ -96,7 +96,7 @@ def test_the_server_shows_pages_and_nothing_else_and_sends_at_once(tmp_path: Pat
     handlers: list[Any] = served.init_handlers()
     names = [handler.__name__ for _, handler, *_ in handlers]
     assert names[0] == "RedirectHandler"
-    assert "Page" in names
+    assert "LecturePage" in names
     assert "Channels" in names
     assert not {"TornadoVoilaTreeHandler", "VoilaContentsHandler", "TornadoVoilaHandler"} & set(
         names
