@@ -138,7 +138,7 @@ class Recorder(Living, widgets.VBox):  # type: ignore[misc]
             "overwrite": self.replace.value,
         }  # fmt: skip
         try:
-            movie.check(path, **asked)
+            movie.kind_of(path, **asked)
         except FileExistsError:
             raise FileExistsError(
                 f"there is a file {str(path)!r} already; tick the box to replace it"
