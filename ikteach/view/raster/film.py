@@ -34,9 +34,14 @@ class Film:
     """
 
     def __init__(
-        self, tree: Tree, effectors: Effectors, *, size: tuple[int, int] = (640, 480),
-        side: str | None = None, finer: int = 2,
-    ) -> None:  # fmt: skip
+        self,
+        tree: Tree,
+        effectors: Effectors,
+        *,
+        size: tuple[int, int] = (640, 480),
+        side: str | None = None,
+        finer: int = 2,
+    ) -> None:
         if side not in (None, *CAMERAS, PLANE):
             raise LookupError(unknown("view", side, (*CAMERAS, PLANE)))
         self.stage = Stage(tree, effectors)
@@ -53,9 +58,14 @@ class Film:
 
 
 def shots(
-    run: Log, *, rate: float = 30, start: float | None = None, seconds: float | None = None,
-    method: str | None = None, title: str = "",
-) -> Iterator[Shot]:  # fmt: skip
+    run: Log,
+    *,
+    rate: float = 30,
+    start: float | None = None,
+    seconds: float | None = None,
+    method: str | None = None,
+    title: str = "",
+) -> Iterator[Shot]:
     """Pick the moments of a run that `rate` frames per second show, by the clock.
 
     start, seconds  from when and for how long [s]; all of it if not given
@@ -79,15 +89,23 @@ def shot(run: Log, clock: float, *, method: str | None = None, title: str = "") 
     name = run.methods[i]
     by = f"{title} by {name}" if title else name
     return Shot(
-        run.theta[t, i], run.targets[t], float(run.floor[t]), float(run.advance[t]),
+        run.theta[t, i],
+        run.targets[t],
+        float(run.floor[t]),
+        float(run.advance[t]),
         f"{by}   {run.clock[t]:.2f} s",
-    )  # fmt: skip
+    )
 
 
 def film(
-    run: Log, *, rate: float = 30, size: tuple[int, int] = (640, 480),
-    side: str | None = None, finer: int = 2, **which: Any,
-) -> Iterator[Pixels]:  # fmt: skip
+    run: Log,
+    *,
+    rate: float = 30,
+    size: tuple[int, int] = (640, 480),
+    side: str | None = None,
+    finer: int = 2,
+    **which: Any,
+) -> Iterator[Pixels]:
     """Draw the pictures of a run, for `formats.movie.write`; `which` as in `shots`."""
     camera = Film(run.tree, run.effectors, size=size, side=side, finer=finer)
     for one in shots(run, rate=rate, **which):

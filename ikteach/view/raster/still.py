@@ -30,10 +30,17 @@ class StillScene(Living):
     """
 
     def __init__(
-        self, tree: Tree, effectors: Effectors, *, names: Sequence[str] = ("",),
-        apart: float | None = None, width: int = 540, height: int = 480, dark: bool = False,
+        self,
+        tree: Tree,
+        effectors: Effectors,
+        *,
+        names: Sequence[str] = ("",),
+        apart: float | None = None,
+        width: int = 540,
+        height: int = 480,
+        dark: bool = False,
         slot: str | None = "still",
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.slot = slot
         size = doors.scene(tree, effectors, names, apart, width, height)
         self.tree, self.effectors = tree, effectors

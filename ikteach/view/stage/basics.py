@@ -59,6 +59,7 @@ class Figures(Layer):
         stage = self.stage
         f, n = len(stage), len(stage.tree)
         self.rows = f + f * n
+        self._grounds = upright(stage.places)
         cut = FINE if f == 1 else PLAIN
         for i, name in enumerate(stage.names):
             row: dict[str | None, int] = {None: i}
@@ -72,9 +73,8 @@ class Figures(Layer):
 
     def place(self, now: Now) -> Array:
         """Put each part where its joint is."""
-        places = self.stage.places
-        joints = transforms(now.orientations, now.positions + places[:, None])
-        return np.concatenate([upright(places), joints.reshape(-1, 3, 4)])
+        joints = transforms(now.orientations, now.positions + self.stage.places[:, None])
+        return np.concatenate([self._grounds, joints.reshape(-1, 3, 4)])
 
     def _dressed(self, piece: Piece, i: int) -> Piece:
         return piece._replace(colour=self._shirt(i)) if piece.colour == SHIRT else piece
@@ -97,8 +97,9 @@ class Gaps(Layer):
     def place(self, now: Now) -> Array:
         """Stretch the rods; one that is too short to be seen is hidden."""
         places = self.stage.places[:, None]
-        short = np.linalg.norm(now.targets - now.effectors, axis=-1) < 1e-3 * self.stage.unit
         rods = sticks(now.effectors + places, now.targets + places)
+        left = rods[..., 1]  # of the way
+        short = np.vecdot(left, left) < (1e-3 * self.stage.unit) ** 2
         return hidden(rods, short).reshape(-1, 3, 4)
 
 

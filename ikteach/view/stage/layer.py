@@ -4,10 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ikteach.arrays import Array
-from ikteach.body.rotation import transforms
+from ikteach.arrays import Array, frozen
 from ikteach.view.stage.forms import Form, Label, Mesh, Piece
 from ikteach.view.stage.stage import Now, Stage
+
+UNMOVED: Array = frozen(np.eye(3, 4)[None])
 
 
 class Layer:
@@ -50,11 +51,14 @@ class Layer:
 
 
 def hidden(rows: Array, where: Array) -> Array:
-    """Hide rows (..., 3, 4) where `where` (...) is true."""
-    return np.where(where[..., None, None], np.nan, rows)
+    """Hide rows (..., 3, 4) where `where` (...) is true; they are written to."""
+    if where.any():
+        rows[where] = np.nan
+    return rows
 
 
 def upright(points: Array) -> Array:
     """[R | p] (points, 3, 4) that only shifts; hidden where a point (..., 3) is NaN."""
-    flat = points.reshape(-1, 3)
-    return transforms(np.broadcast_to(np.eye(3), (len(flat), 3, 3)), flat)
+    rows = UNMOVED.repeat(points.size // 3, axis=0)
+    rows[..., 3] = points.reshape(-1, 3)
+    return rows

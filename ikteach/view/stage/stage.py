@@ -206,8 +206,9 @@ class Stage:
         """
         if self.normal is None:
             x, _, z = self.extent.centre
-            p = [x, floor, z - advance % (SQUARE * self.unit)]
-            return np.column_stack([np.eye(3), p])
+            laid = np.eye(3, 4)
+            laid[:, 3] = x, floor, z - advance % (SQUARE * self.unit)
+            return laid
         right, up, back = picture_axes(self.normal).T
         return np.column_stack([right, back, -up, self.extent.centre - 0.2 * self.unit * back])
 
@@ -244,7 +245,7 @@ class Stage:
         f, n, k = len(self), len(self.tree), len(self.effectors)
         frames = about.get("frames")
         if frames is None:
-            frames = forward(self.tree, self._each("theta", theta, (f, n)))
+            frames = forward(self.tree, _checked("theta", theta, (f, n)))
         columns, ellipsoid = about.get("columns"), about.get("ellipsoid")
         axes, lengths = (None, None) if ellipsoid is None else ellipsoid
         floor, effector = about.get("floor"), about.get("effector", 0)
@@ -254,16 +255,16 @@ class Stage:
         if len(reach) > k:
             raise ValueError(f"{k} effectors have at most {k} chains to show, not {len(reach)}")
         return Now(
-            self._each("positions", frames.positions, (f, n, 3)),
-            self._each("orientations", frames.orientations, (f, n, 3, 3)),
-            self._each("effectors", locate(frames, self.effectors), (f, k, 3)),
-            self._each("targets", targets, (f, k, 3)),
+            _checked("positions", frames.positions, (f, n, 3)),
+            _per_figure(frames.orientations, (f, n, 3, 3)),
+            _per_figure(locate(frames, self.effectors), (f, k, 3)),
+            _checked("targets", targets, (f, k, 3)),
             self.floor if floor is None else _number("floor", floor),
             _number("advance", about.get("advance", 0.0)),
             effector,
-            None if columns is None else self._each("columns", columns, (f, 3, n)),
-            None if axes is None else self._each("directions of the ellipsoid", axes, (f, 3, 3)),
-            None if lengths is None else self._each("lengths of the ellipsoid", lengths, (f, 3)),
+            None if columns is None else _checked("columns", columns, (f, 3, n)),
+            None if axes is None else _checked("directions of the ellipsoid", axes, (f, 3, 3)),
+            None if lengths is None else _checked("lengths of the ellipsoid", lengths, (f, 3)),
             [(numbers("reach", centre), inner, outer) for centre, inner, outer in reach],
         )
 
@@ -276,15 +277,21 @@ class Stage:
         long = np.where(self.tree.slide, SHOWN_AT * self.unit, SHOWN_AT)
         return long[:, None] * columns.swapaxes(-1, -2)
 
-    def _each(self, name: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:
-        """Give each figure a row of its own, or the one there is; ValueError names the rest."""
-        array = numbers(name, values)
-        if array.shape not in (shape, shape[1:]):
-            fits = f"{shape[1:]} or {shape}"
-            raise ValueError(f"{name} must have the shape {fits}, not {array.shape}")
-        if not finite(array):
-            raise ValueError(f"{name} must be finite, not {shown(array[~np.isfinite(array)][0])}")
-        return array if array.shape == shape else array[None].repeat(shape[0], axis=0)
+
+def _per_figure(array: Array, shape: tuple[int, ...]) -> Array:
+    """Give each figure a row of its own, where there is one for all."""
+    return array if array.shape == shape else array[None].repeat(shape[0], axis=0)
+
+
+def _checked(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:
+    """Make finite numbers, a row per figure; ValueError names what is not, or does not fit."""
+    array = numbers(name, values)
+    if array.shape not in (shape, shape[1:]):
+        fits = f"{shape[1:]} or {shape}"
+        raise ValueError(f"{name} must have the shape {fits}, not {array.shape}")
+    if not finite(array):
+        raise ValueError(f"{name} must be finite, not {array[~np.isfinite(array)][0]}")
+    return _per_figure(array, shape)
 
 
 def _number(name: str, value: Any) -> float:

@@ -47,9 +47,11 @@ def fused(mesh: Mesh) -> tuple[three.Object3D, Runs]:
     # What moves is not seen before the first frame has put its parts in place. Nor is it to be left
     # out when it seems out of the picture: three.js would look where its points were at first.
     thing = (three.LineSegments if wires else three.Mesh)(
-        geometry, _material(mesh, wires, bool(normals)), frustumCulled=False,
+        geometry,
+        _material(mesh, wires, bool(normals)),
+        frustumCulled=False,
         visible=STATIC in rows,
-    )  # fmt: skip
+    )
     return thing, _runs(rows, np.diff(firsts).tolist())
 
 

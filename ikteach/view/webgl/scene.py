@@ -10,7 +10,7 @@ import ipywidgets as widgets
 import numpy as np
 import pythreejs as three
 
-from ikteach.arrays import Array
+from ikteach.arrays import Array, finite
 from ikteach.body import Effectors, Tree
 from ikteach.names import unknown
 from ikteach.view.raster.drawing import Drawing
@@ -50,10 +50,17 @@ class Scene(Living):
     """
 
     def __init__(
-        self, tree: Tree, effectors: Effectors, *, names: Sequence[str] = ("",),
-        apart: float | None = None, width: int = 540, height: int = 480, dark: bool = False,
+        self,
+        tree: Tree,
+        effectors: Effectors,
+        *,
+        names: Sequence[str] = ("",),
+        apart: float | None = None,
+        width: int = 540,
+        height: int = 480,
+        dark: bool = False,
         slot: str | None = "scene",
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.slot = slot
         size = doors.scene(tree, effectors, names, apart, width, height)
         self.tree, self.effectors = tree, effectors
@@ -87,9 +94,13 @@ class Scene(Living):
             children=[*things, *objects.lights()], background=paper(self._dark).back
         )
         self.renderer = three.Renderer(
-            scene=self.scene, camera=self.camera, antialias=False, width=width, height=height,
+            scene=self.scene,
+            camera=self.camera,
+            antialias=False,
+            width=width,
+            height=height,
             controls=[three.OrbitControls(controlling=self.camera)],
-        )  # fmt: skip
+        )
         self.cameras = Cameras(self.renderer, self.stage, aspect)
 
     @property
@@ -169,7 +180,9 @@ class Scene(Living):
             shown.layer.note(self.now)
             frame.append(shown.layer.place(self.now))
         rows = np.concatenate(frame)
-        self.driver.show(np.where(np.isnan(rows[:, :1, 3:]), HIDDEN, rows), self._change)
+        if not finite(rows):
+            rows[np.isnan(rows[:, 0, 3])] = HIDDEN
+        self.driver.show(rows, self._change)
 
     def _drawn(self) -> list[Shown]:
         """List the layers that are drawn, in the order of their rows."""

@@ -14,6 +14,8 @@ from ikteach.body.rotation import transforms
 from ikteach.motion.reachable import annulus
 from ikteach.solvers.singularity import ellipsoid
 from ikteach.view import Scene, StillScene
+from ikteach.view.stage.forms import Ball
+from ikteach.view.stage.layer import Layer, upright
 from ikteach.view.stage.layers import LAYERS
 from ikteach.view.stage.stage import CAMERAS, View, picture_axes
 from ikteach.view.stage.trails import Prints, Trail
@@ -207,6 +209,64 @@ def test_what_does_not_fit_is_refused_in_words(make, kind):
         scene.look_from("fron")
     with pytest.raises(ValueError, match="at least one figure"):
         kind(TREE, EFFECTORS, names=[])
+
+
+@pytest.mark.parametrize("kind", [Scene, StillScene])
+@pytest.mark.parametrize(
+    ("told", "sentence"),
+    [
+        ({"theta": "up"}, "theta must be made of numbers, not 'up'"),
+        ({"theta": np.full(20, np.nan)}, "theta must be finite, not nan"),
+        ({"targets": [["a", 1, 2]] * 4}, "targets must be made of numbers"),
+        ({"targets": TARGETS + np.inf}, "targets must be finite, not inf"),
+        ({"floor": "low"}, "floor must be made of numbers, not 'low'"),
+        ({"advance": np.nan}, "advance must be one number, and finite, not nan"),
+        ({"columns": J * np.nan}, "columns must be finite, not nan"),
+        ({"effector": "hand.l"}, "effector must be from 0 to 3, not 'hand.l'"),
+    ],
+)
+def test_what_is_no_number_is_refused_in_words(make, kind, told, sentence):
+    scene = make(kind)
+    with pytest.raises(ValueError, match=sentence):
+        scene.show(**{"theta": THETA, "targets": TARGETS} | told)
+    with pytest.raises(TypeError, match="no option of show 'colums'; did you mean 'columns'"):
+        scene.show(THETA, TARGETS, colums=J)
+
+
+@pytest.mark.parametrize("kind", [Scene, StillScene])
+def test_a_chain_without_end_has_no_surface(make, kind):
+    scene = make(kind)
+    scene.switch("reach")
+    scene.show(THETA, TARGETS, reach=[((0, 0, 0), 0.0, np.inf), ((0, 0, 0), np.nan, 0.5)])
+    layer = LAYERS["reach"](scene.stage)
+    now = scene.stage.now(THETA, TARGETS, reach=[((0, 0, 0), 0.0, np.inf), ((0, 0, 0), 0.1, 0.5)])
+    assert (~np.isnan(layer.place(now)[:, 0, 3])).tolist() == [False, False, True, True] + [
+        False
+    ] * 4
+
+
+class Balloon(Layer):
+    """A ball over the head."""
+
+    name = "balloon"
+
+    def build(self):
+        self.add([Ball((0, 0, 0), (0.1, 0.1, 0.1))] * len(self.stage), ["#ff0000"])
+
+    def place(self, now):
+        return upright(now.positions[:, 0] + self.stage.places + [0, 1, 0])
+
+
+@pytest.mark.parametrize("kind", [Scene, StillScene])
+def test_a_new_layer_is_one_class(make, kind, monkeypatch):
+    monkeypatch.setitem(LAYERS, "balloon", Balloon)
+    scene = make(kind)
+    scene.show(THETA, TARGETS)
+    scene.switch("balloon")
+    assert scene.layers["balloon"]
+    png = scene.png if kind is StillScene else scene.still().png
+    pixels = np.asarray(Image.open(io.BytesIO(png)).convert("RGB")).astype(int)
+    assert (pixels[..., 0] - pixels[..., 1:].max(axis=-1) > 120).sum() > 100
 
 
 @pytest.mark.parametrize("kind", [Scene, StillScene])
