@@ -7,14 +7,14 @@ from typing import Any, NamedTuple
 
 import matplotlib
 import numpy as np
-from PIL import Image, ImageColor, ImageDraw, ImageFont  # comes with matplotlib
+from PIL import Image, ImageDraw, ImageFont  # comes with matplotlib
 
 from ikteach.arrays import Array
 from ikteach.formats.movie import Pixels
 from ikteach.markup import brief, visible
 from ikteach.view.raster.raycast import Eye, Solid, draw, solids, square
 from ikteach.view.stage import shapes
-from ikteach.view.stage.colours import Paper, paper
+from ikteach.view.stage.colours import Paper, paper, rgb
 from ikteach.view.stage.forms import Form, Grid, Label, Mesh, Ring, Sole, Wires
 from ikteach.view.stage.layer import Layer
 from ikteach.view.stage.stage import Now, Stage
@@ -186,7 +186,7 @@ def _cut(start: Array, end: Array) -> Array:
 
 
 def _ink(colour: str, opacity: float) -> tuple[int, ...]:
-    return (*ImageColor.getrgb(colour)[:3], round(255 * opacity))
+    return (*rgb(colour).astype(int), round(255 * opacity))
 
 
 @cache

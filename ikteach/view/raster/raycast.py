@@ -14,6 +14,7 @@ import numpy as np
 from ikteach.arrays import Array, ArrayLike
 from ikteach.body.rotation import sticks
 from ikteach.formats.movie import Pixels
+from ikteach.view.stage.colours import rgb
 from ikteach.view.stage.forms import Arrow, Ball, Box, Form, Limb, Mark, Rod
 from ikteach.view.stage.stage import FIELD, picture_axes
 
@@ -232,8 +233,3 @@ def square(matrices: Array) -> Array:
     """Put the row 0 0 0 1 under [R | p] (..., 3, 4)."""
     last = np.broadcast_to([0.0, 0, 0, 1], (*matrices.shape[:-2], 1, 4))
     return np.concatenate([matrices, last], axis=-2)
-
-
-def rgb(colour: str) -> Array:
-    """Read the three numbers of "#rrggbb", 0 to 255."""
-    return np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)], dtype="f4")

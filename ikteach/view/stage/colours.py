@@ -2,6 +2,10 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
+from ikteach.arrays import Array
+
 # Okabe & Ito's colours, which people with any colour vision can tell apart.
 BLUE, ORANGE, RED, GREEN = "#0072b2", "#e69f00", "#d55e00", "#009e73"
 PURPLE, SKY, GREY = "#cc79a7", "#56b4e9", "#808890"
@@ -33,3 +37,8 @@ def paper(dark: bool) -> Paper:
 def effector_colour(i: int) -> str:
     """Give effector i, its target, joint i or figure i its colour."""
     return EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)]
+
+
+def rgb(colour: str) -> Array:
+    """Read the three numbers of "#rrggbb", 0 to 255."""
+    return np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)], dtype="f4")

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 
 import numpy as np
 import pythreejs as three
-from matplotlib.colors import to_rgb
 
+from ikteach.view.stage.colours import rgb
 from ikteach.view.stage.forms import STATIC, Mesh
 from ikteach.view.webgl.surfaces import surface
 
@@ -27,7 +27,7 @@ def fused(mesh: Mesh) -> tuple[three.Object3D, Runs]:
     joined = np.concatenate(
         [shape.joined + first for shape, first in zip(surfaces, firsts[:-1], strict=True)]
     )
-    colours = [to_rgb(piece.colour) for piece in mesh.pieces]
+    colours = [rgb(piece.colour) / 255 for piece in mesh.pieces]
     arrays = {
         "position": np.concatenate([shape.points for shape in surfaces]),
         "color": np.repeat(colours, np.diff(firsts), axis=0),

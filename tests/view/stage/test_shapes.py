@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from ikteach.view.stage import shapes
+from ikteach.view.stage.colours import BLUE, RED, rgb
 from ikteach.view.stage.forms import Ball, Box, Mesh, Piece, Rod, Wires
 from ikteach.view.stage.shapes import arrow, globe, mark, ring, rod, sole, wires
 from ikteach.view.webgl.mesh import fused, shifted
@@ -44,7 +45,7 @@ def test_wires_lie_on_the_ball():
 
 def test_pieces_keep_their_points_and_rows():
     rod, ball = Rod((0, 0, 0), (0, 2, 0), 1.0), Ball((0, 5, 0), (1, 2, 1))
-    mesh = Mesh([Piece(4, Box(0.78), "red"), Piece(4, Box(0.78), "red"), Piece(1, rod, "blue")])
+    mesh = Mesh([Piece(4, Box(0.78), RED), Piece(4, Box(0.78), RED), Piece(1, rod, BLUE)])
     thing, runs = fused(mesh)
     box = mark(1.0, boxed=True)
     n, m = len(box.points), len(shapes.rod(1.0).points)
@@ -56,7 +57,7 @@ def test_pieces_keep_their_points_and_rows():
     joined = thing.geometry.index.array.reshape(-1, 3)
     more = len(box.joined)
     assert (joined[:more] + n == joined[more : 2 * more]).all()
-    assert thing.geometry.attributes["color"].array[-1] == pytest.approx([0, 0, 1])
-    shaded, _ = fused(Mesh([Piece(0, ball, "red")]))
+    assert thing.geometry.attributes["color"].array[-1] == pytest.approx(rgb(BLUE) / 255)
+    shaded, _ = fused(Mesh([Piece(0, ball, RED)]))
     assert "normal" in shaded.geometry.attributes
     assert shaded.geometry.attributes["position"].array[:, 1].max() == pytest.approx(7)
