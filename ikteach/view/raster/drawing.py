@@ -23,6 +23,7 @@ CLOSE = 0.3  # nearer than that no line is drawn [units of the eye]
 SOLID = 0.8  # from this opacity on a mesh is drawn as if nothing shone through it
 FLAT = (Grid, Sole)  # what lies on the ground: drawn first, under all else
 LINES = (Ring, Wires)
+LARGE = 1_000_000  # pixels: more are not worth two rays at a side
 LETTER = 0.7  # height of a letter, as a share of its label's
 HAIR = 0.99  # a line on a surface is seen: it must be so much farther to be hidden
 
@@ -32,13 +33,15 @@ class Drawing:
 
     size   (width, height) of the picture [pixels]
     side   one of `stage.CAMERAS`, or "plane"; None: as a live scene looks at first
-    finer  how many rays a pixel's side is made of: 1 is fast, 2 has smooth edges
+    finer  how many rays a pixel's side is made of: 1 is fast, 2 has smooth edges; None: 2 where
+           the picture is of the usual size
     """
 
     def __init__(
-        self, stage: Stage, size: tuple[int, int], side: str | None = None, finer: int = 2
+        self, stage: Stage, size: tuple[int, int], side: str | None = None, finer: int | None = None
     ) -> None:
-        self.stage, self.size, self.finer = stage, size, finer
+        self.stage, self.size = stage, size
+        self.finer = finer or (2 if size[0] * size[1] <= LARGE else 1)
         self._solids: dict[Layer, list[list[Solid]]] = {}
         self.look_from(side or stage.side)
 

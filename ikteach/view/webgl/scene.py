@@ -75,7 +75,7 @@ class Scene(Living):
         self._drawing = Drawing(stage, size)
         self.look_from(stage.side)
         self.driver = Driver(self.renderer, description=stage.words)
-        self.driver.on_sign = self._greet
+        self.driver.on_page = self._greet
         self.driver.as_png = lambda: self.still().png
         self._plan()
         self.note = Note()
