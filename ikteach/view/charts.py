@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from ikteach.markup import as_label
 from ikteach.view.plots import STYLES
-from ikteach.view.stage.skin import EFFECTOR_COLOURS
+from ikteach.view.stage.colours import effector_colour
 from ikteach.view.widgets.picture import Still
 
 HATCHES = ("", "//", "..", "xx", "--", "oo")
@@ -23,7 +23,7 @@ def lines(
     figure, axes = _axes(title, xlabel, ylabel, log)
     for i, name in enumerate(table):
         style = MARKS[i % len(MARKS)] * marks + STYLES[i % len(STYLES)]
-        colour = EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)]
+        colour = effector_colour(i)
         axes.plot(table.index, table[name], style, color=colour, ms=4, label=as_label(name))
     axes.legend(fontsize=8)
     told = (
@@ -45,7 +45,7 @@ def bars(
         axes.bar(
             at + (i - (len(table.columns) - 1) / 2) * width, table[name], 0.92 * width,
             yerr=None if spread is None else spread[name], capsize=3, label=as_label(name),
-            color=EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)], hatch=HATCHES[i % len(HATCHES)],
+            color=effector_colour(i), hatch=HATCHES[i % len(HATCHES)],
             edgecolor="white", ecolor="0.25",
         )  # fmt: skip
     labels = [", ".join(row) if isinstance(row, tuple) else str(row) for row in table.index]

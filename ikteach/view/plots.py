@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from ikteach.arrays import Array
 from ikteach.body import Effectors, Tree
 from ikteach.markup import as_label
-from ikteach.view.stage.skin import EFFECTOR_COLOURS
+from ikteach.view.stage.colours import effector_colour
 from ikteach.view.widgets.picture import Still
 
 STYLES = ("-", "--", "-.", ":")
@@ -36,7 +36,7 @@ def phase_plot(table: pd.DataFrame) -> Still:
     panels = figure.subplots(1, len(methods), sharey=True, squeeze=False)[0]
     for axes, method in zip(panels, methods, strict=True):
         for i, (effector, error) in enumerate(table[method].items()):
-            colour, style = EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)], STYLES[i % len(STYLES)]
+            colour, style = effector_colour(i), STYLES[i % len(STYLES)]
             axes.semilogy(
                 table.index, np.maximum(error, LEAST), style, color=colour, label=as_label(effector)
             )

@@ -14,7 +14,7 @@ from ikteach.solvers import dls
 from ikteach.study import after, variants
 from ikteach.study.experiment import circle
 from ikteach.view.live.bench import Bench, Canvas, Shown, choice, log_slider, slider
-from ikteach.view.stage.skin import BLUE, GREEN, ORANGE, RED
+from ikteach.view.stage.colours import BLUE, GREEN, ORANGE, RED
 from ikteach.view.widgets.closing import making
 
 START = np.array([0.9, -0.7, -0.6])  # [rad] a bent arm

@@ -45,7 +45,7 @@ class SceneBench(Bench):
         beside = widgets.HBox([scene.widget, column], layout=widgets.Layout(flex_flow="row wrap"))
         chart = [self._picture] if self._picture.png else []
         self.children = [beside, self.status, *chart, self._below]
-        scene.driver.on_sign = self._seen
+        scene.driver.on_page = self._seen
 
     def refresh(self) -> None:
         """Draw the scene anew, and say what it shows."""

@@ -15,7 +15,7 @@ from ikteach.solvers import sdls
 from ikteach.solvers.response import Directions, directions, factors, filtered
 from ikteach.view.live.bench import Bench, Canvas, Shown, log_slider, slider
 from ikteach.view.plots import bones
-from ikteach.view.stage.skin import BLUE, EFFECTOR_COLOURS, GREEN, ORANGE
+from ikteach.view.stage.colours import BLUE, EFFECTOR_COLOURS, GREEN, ORANGE
 from ikteach.view.widgets.closing import making
 from ikteach.view.widgets.prose import grid
 

@@ -8,7 +8,7 @@ from ikteach.body.figures import planar_arm
 from ikteach.solvers import SOLVERS, conditioning, ellipsoid, manipulability
 from ikteach.view.chapters.figure import SceneBench
 from ikteach.view.live.bench import Canvas, Shown, slider
-from ikteach.view.stage.skin import EFFECTOR_COLOURS, PURPLE, SKY
+from ikteach.view.stage.colours import EFFECTOR_COLOURS, PURPLE, SKY
 from ikteach.view.webgl.scene import Scene
 
 LEAST = 1e-5  # [rad] shorter bars are not seen

@@ -12,7 +12,7 @@ from ikteach.motion import ignore, step
 from ikteach.solvers import transpose
 from ikteach.study.experiment import downhill
 from ikteach.view.live.bench import Bench, Canvas, Shown, slider
-from ikteach.view.stage.skin import BLUE, GREEN, ORANGE, RED
+from ikteach.view.stage.colours import BLUE, GREEN, ORANGE, RED
 from ikteach.view.widgets.closing import making
 
 START = np.array([0.9, -0.7, -0.6])  # [rad] a bent arm

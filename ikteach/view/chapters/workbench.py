@@ -344,7 +344,7 @@ class Workbench(Live):
         self._back_to_now()
         old, old_targets = self.scene, self.targets
         self.scene = self._scene(self.session)
-        self.scene.driver.on_sign = self._seen
+        self.scene.driver.on_page = self._seen
         self.targets = self._targets()
         box = self.panels["Target position"].widget
         box.children = [self.targets, *box.children[1:]]

@@ -40,7 +40,7 @@ class Live(Living, widgets.VBox):  # type: ignore[misc]
         self._changes = 0
         self._act = Actor()  # without a notebook nothing moves by itself; `session.tick()` does
         self._task: asyncio.Task[None] | None = None
-        scene.driver.on_sign = self._seen
+        scene.driver.on_page = self._seen
         super().__init__()
 
     def draw(self) -> None:
@@ -150,7 +150,7 @@ class Live(Living, widgets.VBox):  # type: ignore[misc]
         due, session = monotonic(), self.session
         try:
             self.draw()
-            while self.playing and not (self.settled or self.scene.driver.alone):
+            while self.playing and not (self.settled or self.scene.driver.unwatched):
                 due = max(due + session.dt, monotonic() - session.dt)  # late: go on, do not race
                 await asyncio.sleep(max(due - monotonic(), 0.001))
                 if not self.playing:

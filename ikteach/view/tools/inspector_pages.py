@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from ikteach.arrays import Array
 from ikteach.markup import as_label
 from ikteach.motion.anatomy import Anatomy
-from ikteach.view.stage.skin import BLUE, GREEN, ORANGE, PURPLE, RED, SKY
+from ikteach.view.stage.colours import BLUE, GREEN, ORANGE, PURPLE, RED, SKY
 
 COLOURS = (BLUE, ORANGE, GREEN, RED, PURPLE, SKY)
 HATCHES = ("", "///", "...", "xxx", "\\\\\\", "++")  # so that colour is not the only sign

@@ -14,7 +14,8 @@ from ikteach.motion.step import BUSS_CAPS
 from ikteach.names import unknown
 from ikteach.solvers import SOLVERS, Solver
 from ikteach.view.live.controls import SLIDERS
-from ikteach.view.stage.stage import CAMERAS, LAYERS
+from ikteach.view.stage.layers import LAYERS
+from ikteach.view.stage.stage import CAMERAS
 from ikteach.view.widgets.ball import Ball
 from ikteach.view.widgets.prose import Prose
 

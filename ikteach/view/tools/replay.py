@@ -18,8 +18,8 @@ from ikteach.markup import as_label
 from ikteach.motion.live.log import Log
 from ikteach.view.plots import LEAST, STYLES
 from ikteach.view.raster.film import Film, Shot
+from ikteach.view.stage.colours import effector_colour
 from ikteach.view.stage.lengths import Lengths, decade
-from ikteach.view.stage.skin import EFFECTOR_COLOURS
 from ikteach.view.widgets import doors
 from ikteach.view.widgets.actor import Actor, in_words
 from ikteach.view.widgets.closing import Living
@@ -223,7 +223,7 @@ def error_picture(run: Log, error: Array) -> tuple[bytes, list[float]]:
     axes = figure.subplots()
     least = LEAST * decade(run.tree, run.effectors)
     for i, name in enumerate(run.effectors.names):
-        colour, style = EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)], STYLES[i % len(STYLES)]
+        colour, style = effector_colour(i), STYLES[i % len(STYLES)]
         axes.semilogy(
             run.clock,
             np.maximum(error[:, i], least),
