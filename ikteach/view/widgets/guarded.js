@@ -38,8 +38,14 @@ function guardedModel(model, tell) {
     },
     off: (/** @type {string} */ events, /** @type {Act} */ act) =>
       model.off(events, guards.get(act)),
-    send: guard((content) => model.send(content), () => tell(LOST_KERNEL)),
-    save_changes: guard(() => model.save_changes(), () => tell(LOST_KERNEL)),
+    send: guard(
+      (content) => model.send(content),
+      () => tell(LOST_KERNEL),
+    ),
+    save_changes: guard(
+      () => model.save_changes(),
+      () => tell(LOST_KERNEL),
+    ),
   };
   return /** @type {Model} */ (
     new Proxy(own, {
