@@ -13,11 +13,11 @@ from numbers import Real
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Index, Mask, frozen
+from ikteach.body.plan import Plan
 from ikteach.checks import numbers, shown
 from ikteach.names import unknown
 
 GROUND = -1
-DEEP = 8  # joints in a chain, from which on fewer rounds are worth more products
 
 
 @dataclass(frozen=True)
@@ -100,9 +100,9 @@ class Tree:
         )
 
     @cached_property
-    def plan(self) -> "Plan":
-        """What `forward` needs of the tree at every call and θ does not change."""
-        return Plan.of(self)
+    def plan(self) -> Plan:
+        """The joints in the order in which `forward` climbs them."""
+        return Plan.of(self.parents, self.offsets, self.axes, self.slide)
 
     @cached_property
     def free(self) -> bool:
@@ -190,75 +190,6 @@ class Effectors:
 
     def __len__(self) -> int:
         return len(self.names)
-
-
-@dataclass(frozen=True, eq=False)
-class Plan:
-    """The tree put in order of depth for `forward`.
-
-    order   (n,)         the joints, those that hang from the ground first
-    rank    (n,)         its inverse: the row of joint j
-    climbs               the rounds in which rows are joined to what is above them: a range of rows,
-                         and the row that each of them is multiplied by
-    terms   (n, 3, 20)   in the plan's order: what 1, sin θ and cos θ are multiplied by to make
-                         [R p v; 0 1 0] (4, 5), each joint in its parent's frame; (n, 4, 20) with
-                         θ itself if there are slides
-    slides               whether there are
-    """
-
-    order: Index
-    rank: Index
-    climbs: tuple[tuple[slice, Index], ...]
-    terms: Array
-    slides: bool
-
-    @classmethod
-    def of(cls, tree: Tree) -> "Plan":
-        """The plan of `tree`."""
-        chains = [tree.above(joint) for joint in range(len(tree))]
-        depth = np.array([len(chain) for chain in chains])
-        order = np.argsort(depth, kind="stable")
-        rank = np.argsort(order)
-        deepest = int(depth.max())
-        # Each round: the rows deeper than `over` and down to `down`, by those `height` above them.
-        if deepest <= DEEP:  # level by level, each row joined once
-            rounds = [(over, over + 1, 1) for over in range(1, deepest)]
-        else:  # pointer doubling: rows hold the last 1, 2, 4 … transforms of their chains
-            rounds = [(2**r, deepest, 2**r) for r in range((deepest - 1).bit_length())]
-        climbs = []
-        for over, down, height in rounds:
-            rows = slice(int((depth <= over).sum()), int((depth <= down).sum()))
-            above = [rank[chains[joint][height]] for joint in order[rows]]
-            climbs.append((rows, frozen(above, np.intp)))
-        slides = bool(tree.slide.any())
-        return cls(
-            order=frozen(order, np.intp),
-            rank=frozen(rank, np.intp),
-            climbs=tuple(climbs),
-            terms=frozen(_terms(tree)[order, : 3 + slides]),
-            slides=slides,
-        )
-
-
-def _terms(tree: Tree) -> Array:
-    """(n, 4, 20): what 1, sin θ, cos θ and θ are multiplied by in [R p v; 0 1 0]."""
-    v, slide = tree.axes, tree.slide[:, None, None]
-    vvT = v[:, :, None] * v[:, None, :]
-    terms = np.zeros((4, len(tree), 4, 5))
-    along, turn, across, travel = terms
-    along[:, :3, :3] = np.where(slide, np.eye(3), vvT)
-    along[:, :3, 3], along[:, 3, 3], along[:, :3, 4] = tree.offsets, 1, v
-    turn[:, :3, :3] = np.where(slide, 0, skew(v))
-    across[:, :3, :3] = np.where(slide, 0, np.eye(3) - vvT)
-    travel[:, :3, 3] = np.where(tree.slide[:, None], v, 0)
-    return terms.swapaxes(0, 1).reshape(len(tree), 4, 20)
-
-
-def skew(v: Array) -> Array:
-    """[v]×, the matrix with [v]× w = v × w: (..., 3) to (..., 3, 3)."""
-    x, y, z = np.moveaxis(v, -1, 0)
-    o = np.zeros_like(x)
-    return np.stack([o, -z, y, z, o, -x, -y, x, o], axis=-1).reshape(*v.shape, 3)
 
 
 def _chains(carried: Mask) -> list[int]:
