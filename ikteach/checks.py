@@ -1,6 +1,7 @@
 """What is refused at the doors: one sentence each, the culprit's name and what is allowed."""
 
 from collections.abc import Callable
+from math import isfinite
 from numbers import Real
 from typing import Any
 
@@ -60,7 +61,7 @@ def function(name: str, value: Any) -> Callable[..., Any]:
 def system(J: Any, e: Any) -> tuple[Array, Array]:
     """Make arrays of floats of J (..., m, n) and e (..., m); ValueError says what does not fit."""
     common = type(J) is type(e) is np.ndarray and J.dtype is e.dtype is FLOAT
-    if common and J.shape[:-1] == e.shape != () and finite(J) and finite(e):
+    if common and J.shape[:-1] == e.shape != () and isfinite(np.vdot(J, J) + np.vdot(e, e)):
         return J, e
     J, e = matrix(J), numbers("e", e)
     if e.shape[-1:] != J.shape[-2:-1]:

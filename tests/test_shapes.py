@@ -22,7 +22,7 @@ from ikteach.motion.live.log import Log
 from ikteach.motion.live.session import Session
 from ikteach.motion.mix import Mix
 from ikteach.motion.reachable import nearest
-from ikteach.motion.step import clamp_error
+from ikteach.motion.rules import clamp_error
 from ikteach.solvers import adjugate, cramer, determinant, ellipsoid, independence, sdls
 from ikteach.solvers.dls import filtered
 from ikteach.solvers.response import Directions, directions, factors, response

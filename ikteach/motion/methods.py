@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, TypeAlias
 
 from ikteach.checks import shown
-from ikteach.motion.step import solver_of
+from ikteach.motion.checks import solver_of
 from ikteach.solvers import Solver, name_of
 
 LONG = 40  # letters of a method's name

@@ -8,7 +8,7 @@ import numpy as np
 from ikteach.arrays import Array, frozen
 from ikteach.body import Effectors
 from ikteach.checks import shown
-from ikteach.motion.step import solver_of
+from ikteach.motion.checks import solver_of
 from ikteach.names import unknown
 from ikteach.solvers import Solver, ask, name_of
 

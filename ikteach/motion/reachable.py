@@ -15,7 +15,7 @@ import numpy as np
 from ikteach.arrays import Array, ArrayLike, Mask
 from ikteach.body import Effectors, Tree, forward, jacobian, locate
 from ikteach.checks import number
-from ikteach.motion.step import checked
+from ikteach.motion.checks import checked
 from ikteach.solvers import dls
 
 NEAR = 1e-3  # of a chain's length: what is so near is reached

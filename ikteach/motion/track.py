@@ -12,8 +12,9 @@ import numpy as np
 from ikteach.arrays import Array, ArrayLike, Mask
 from ikteach.body import Effectors, Tree, forward, locate
 from ikteach.checks import count, function, number, numbers, shown, together
+from ikteach.motion.checks import checked, solver_of
 from ikteach.motion.rank import smallest_sigma
-from ikteach.motion.step import checked, solver_of, step
+from ikteach.motion.step import step
 from ikteach.names import unknown
 from ikteach.solvers import Solver, name_of
 

@@ -34,6 +34,11 @@ def solve(A: Array, b: Array) -> Any:
     return np.linalg.solve(A, b) if b.ndim == 1 else np.linalg.solve(A, b[..., None])[..., 0]
 
 
+def gram(A: Array) -> Array:
+    """Multiply AAᵀ, A (..., m, n): (..., m, m)."""
+    return A.dot(A.T) if A.ndim == 2 else A @ A.mT
+
+
 def plus_diagonal(A: Array, d: Any) -> Array:
     """Add d, one number or (...), to the diagonal of A (..., m, m), in place where it has room.
 

@@ -13,12 +13,12 @@ from ikteach.arrays import ArrayLike, Mask
 from ikteach.body import Effectors, Tree, forward, jacobian, locate
 from ikteach.checks import count, number, numbers, shown
 from ikteach.motion import Track, reachable, track
+from ikteach.motion.checks import checked
 from ikteach.motion.live.log import Log, of_run, same_targets
 from ikteach.motion.methods import Methods, methods_of
 from ikteach.motion.reach.packages import Body, backs_reach
 from ikteach.motion.reach.reaching import Reaching, trial
 from ikteach.motion.reach.ways import WAYS, Way, Ways, advance
-from ikteach.motion.step import checked
 from ikteach.names import unknown
 from ikteach.solvers import SOLVERS, sdls
 from ikteach.solvers.response import directions, factors

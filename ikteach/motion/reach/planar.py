@@ -18,7 +18,8 @@ from ikteach.motion.reach.packages import NONE
 from ikteach.motion.reach.reaching import Reaching
 from ikteach.motion.reach.ways import MAX_STEP, NEAR, PARTS, SINGULAR, Tick, figures_of
 from ikteach.motion.reachable import reachable
-from ikteach.motion.step import clip, hold, step
+from ikteach.motion.rules import clip, hold
+from ikteach.motion.step import step
 from ikteach.solvers import SOLVERS, Solvers, ask, cramer, independence
 
 ROOM = np.array([[-1.3, -1.0, 0.0], [1.3, 1.3, 0.0]])  # where a cursor can be [m]
@@ -95,13 +96,12 @@ class PlanarReach(Reaching):
         self._somehow = self._aimed or bool(reachable(*self.figure, self.cursor[None])[0])
 
     def _advance(self, name: str) -> Tick:
-        theta, told = self.standing[name].tick.theta, np.full(3, np.nan)
+        theta = self.standing[name].tick.theta
         packaged = name == "cramer"
 
         def solve(J: Array, e: Array) -> Array:
             if packaged:
                 J, e = square(self.figure, theta, J, e)
-            told[:] = figures_of(J if packaged else J[:2], packaged)
             lost = packaged and not (self._aimed and independence(J) > SINGULAR)
             if lost or np.linalg.norm(e) <= NEAR:
                 return np.zeros(len(theta))
@@ -112,6 +112,7 @@ class PlanarReach(Reaching):
             max_step=self.max_step, limits=clip if packaged else hold,
         )  # fmt: skip
         gap = self.cursor - locate(forward(self.tree, done.theta), self.effectors)[0]
-        det, independent, sigma = told
+        J = square(self.figure, theta, done.J, done.e)[0] if packaged else done.J[:2]
+        det, independent, sigma = figures_of(J, packaged)
         package = np.asarray(NONE if packaged and not self._aimed else 0)
         return Tick(done.theta, package, det, independent, sigma, np.asarray(np.linalg.norm(gap)))

@@ -28,7 +28,8 @@ from ikteach.motion.reach.packages import (
     choose,
     look,
 )
-from ikteach.motion.step import clip, hold, step
+from ikteach.motion.rules import clip, hold
+from ikteach.motion.step import step
 from ikteach.names import unknown
 from ikteach.solvers import SOLVERS, Solver, cramer, determinant, independence, name_of
 
@@ -215,13 +216,10 @@ def _reach(
     package = PACKAGES[number] if way.packaged else together(PACKAGES[number].side)
     used = body.columns(package.degrees)
     idle = homewards(body, theta, besides=package.degrees if way.packaged else ())
-    told = np.full((3, len(theta)), np.nan)
 
     def solve(J: Array, e: Array) -> Array:
         """Δθ of the method on the degrees in use, with the way to rest of the others in it."""
         ours = J @ used
-        if told[0, 0] != told[0, 0]:  # once a tick, not again where a limit holds a joint
-            told[:] = figures_of(ours, way.packaged)
         far = np.linalg.norm(e, axis=-1) > NEAR
         if way.packaged:  # and where det is near 0 the package takes no step
             far &= independence(ours) > SINGULAR
@@ -233,7 +231,7 @@ def _reach(
         body.tree, theta, body.hands[package.side], cursor[:, None, :], solve,
         max_step=max_step, limits=clip if way.packaged else hold,
     )  # fmt: skip
-    return done.theta, told
+    return done.theta, figures_of(done.J @ used, way.packaged)
 
 
 def figures_of(J: Array, packaged: bool) -> Array:

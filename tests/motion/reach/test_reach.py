@@ -510,3 +510,16 @@ def test_planar_cramer_points_outward():
     still = reach.theta
     reach.tick()
     assert_array_equal(reach.theta, still)
+
+
+def test_sigma_is_that_of_the_pose_also_where_a_limit_holds_a_joint():
+    reach = PlanarReach(method="dls", cursor=(-0.9, -0.4, 0))
+    held = 0
+    for _ in range(40):
+        theta = reach.standing["dls"].tick.theta
+        reach.tick()
+        J = jacobian(reach.tree, forward(reach.tree, theta), reach.effectors)[:2]
+        assert reach.standing["dls"].tick.sigma == np.linalg.svdvals(J)[-1]
+        after = reach.standing["dls"].tick.theta
+        held += bool(((after == reach.tree.lower) | (after == reach.tree.upper)).any())
+    assert held
