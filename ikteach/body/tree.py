@@ -70,7 +70,7 @@ class Tree:
 
     @classmethod
     def of(cls, joints: Iterable[Joint]) -> "Tree":
-        """The tree of these rows; ValueError or LookupError names the row that is wrong."""
+        """Make the tree of these rows; ValueError or LookupError names the row that is wrong."""
         if not isinstance(joints, Iterable):
             raise TypeError(f"a tree is made of Joints, not of {shown(joints)}")
         rows = list(joints)
@@ -113,7 +113,7 @@ class Tree:
         return len(self.names)
 
     def index(self, name: str) -> int:
-        """The row of the joint called `name`; LookupError suggests what may have been meant."""
+        """Find the row of the joint called `name`; LookupError suggests another."""
         try:
             return self.names.index(name)
         except ValueError:
@@ -129,7 +129,7 @@ class Tree:
         return np.where(free, (theta + np.pi) % (2 * np.pi) - np.pi, theta)
 
     def above(self, joint: int) -> list[int]:
-        """The joint and all it hangs from, up to the ground."""
+        """Find the joint and all it hangs from, up to the ground."""
         chain = []
         while joint != GROUND:
             chain.append(joint)
@@ -157,7 +157,7 @@ class Effectors:
 
     @classmethod
     def of(cls, tree: Tree, points: Mapping[str, tuple[str, Sequence[float]]]) -> "Effectors":
-        """The effectors {name: (joint, offset)} of `tree`; any number, on any joint."""
+        """Make the effectors {name: (joint, offset)} of `tree`, on any joints."""
         if not isinstance(tree, Tree):
             raise TypeError(f"a Tree is needed here, not {shown(tree)}")
         if not isinstance(points, Mapping):
@@ -193,7 +193,7 @@ class Effectors:
 
 
 def _chains(carried: Mask) -> list[int]:
-    """Number the connected groups of joints; one effector connects all joints that carry it."""
+    """Give a number to each connected group of joints (an effector connects them)."""
     chains = np.full(carried.shape[1], -1)
     for i, row in enumerate(carried):
         met = set(chains[row]) - {-1}
@@ -214,8 +214,9 @@ def _check(row: Joint, above: Mapping[str, int], names: Sequence[str]) -> None:
     if row.parent is not None and row.parent not in list(above):
         if row.parent in names:
             raise ValueError(f"{who} hangs from {parent}, which is not above it")
-        raise ValueError(f"{who} hangs from {parent}, but there is "
-                         + unknown("joint", row.parent, names))  # fmt: skip
+        raise ValueError(
+            f"{who} hangs from {parent}, but there is " + unknown("joint", row.parent, names)
+        )
     _check_vector(f"the offset of {who}", row.offset)
     _check_vector(f"the axis of {who}", row.axis)
     if not np.any(row.axis):

@@ -56,9 +56,15 @@ class Anatomy(NamedTuple):
 
 
 def anatomy(
-    tree: Tree, theta: ArrayLike, effectors: Effectors, targets: ArrayLike, solver: Solver | str,
-    *, methods: Methods = SOLVERS, **options: Any,
-) -> Anatomy:  # fmt: skip
+    tree: Tree,
+    theta: ArrayLike,
+    effectors: Effectors,
+    targets: ArrayLike,
+    solver: Solver | str,
+    *,
+    methods: Methods = SOLVERS,
+    **options: Any,
+) -> Anatomy:
     """Take one step of `solver` apart, from one pose θ (n,) and targets (k, 3) [m].
 
     methods  whose responses are shown beside it; if one of them has the solver's name and is
@@ -77,10 +83,20 @@ def anatomy(
     before = locate(forward(tree, theta), effectors)
     d = directions(J, e)
     return Anatomy(
-        name, e, J, done.mobility, d.U, d.sigma, d.Vt, d.alpha,
+        name,
+        e,
+        J,
+        done.mobility,
+        d.U,
+        d.sigma,
+        d.Vt,
+        d.alpha,
         {name: response(one, J, e) for name, one in chosen.items()},
-        done.wanted, done.allowed, done.dtheta, done.held,
+        done.wanted,
+        done.allowed,
+        done.dtheta,
+        done.held,
         predicted=(done.J @ done.dtheta).reshape(-1, 3),
         actual=locate(forward(tree, done.theta), effectors) - before,
         theta=done.theta,
-    )  # fmt: skip
+    )

@@ -107,9 +107,16 @@ def step(
         array.setflags(write=False)
 
     question = _Question(
-        solver, theta, J, aim, free, free is tree.mobility and tree.free,
-        max_step, cap, effectors.chains,
-    )  # fmt: skip
+        solver,
+        theta,
+        J,
+        aim,
+        free,
+        free is tree.mobility and tree.free,
+        max_step,
+        cap,
+        effectors.chains,
+    )
     wanted = question.answer(free, aim)
     if wanted.ndim <= len(batch):  # there is a cap for each of a batch
         wanted = np.broadcast_to(wanted, (*batch, len(tree)))

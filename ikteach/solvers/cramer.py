@@ -51,7 +51,7 @@ def cramer(J: ArrayLike, e: ArrayLike, *, least: float = 1e-6) -> Array:
 
 
 def columns(A: ArrayLike) -> tuple[Array, Array, Array]:
-    """The three columns of A (..., 3, 3), each (..., 3)."""
+    """Find the three columns of A (..., 3, 3), each (..., 3)."""
     A = _square(A)
     return A[..., 0], A[..., 1], A[..., 2]
 

@@ -101,7 +101,7 @@ def ask(solver: Any, J: Array, e: Array) -> Array:
 
 
 def _ours(solver: Any, J: Array, e: Array) -> Callable[[Array, Array], Array] | None:
-    """The formula of one of our own solvers, with its options if there are any; else None."""
+    """Find the formula of one of our own solvers, with its options if there are any; else None."""
     if type(solver) is FunctionType:
         own = FORMULAS.get(solver)
         return own and own.apply
@@ -115,7 +115,7 @@ def _ours(solver: Any, J: Array, e: Array) -> Callable[[Array, Array], Array] | 
 
 
 def _asked(solver: Any, J: Array, e: Array) -> Array:
-    """The answer of any solver, once it has been looked at from all sides."""
+    """Find the answer of any solver, once it has been looked at from all sides."""
     try:
         answer = solver(J, e)
     except Exception as error:
@@ -138,7 +138,7 @@ def _asked(solver: Any, J: Array, e: Array) -> Array:
 
 
 def sealed(array: Array) -> Array:
-    """The array if nobody can write to it, else a copy to which nobody can."""
+    """Find the array if nobody can write to it, else a copy to which nobody can."""
     if array.flags.writeable:
         array = array.copy()
         array.setflags(write=False)
@@ -146,7 +146,7 @@ def sealed(array: Array) -> Array:
 
 
 def name_of(solver: Any) -> str:
-    """The name of a solver, also of one with its options bound; else that of its class."""
+    """Find the name of a solver, also of one with its options bound; else that of its class."""
     while isinstance(solver, partial):
         solver = solver.func
     try:
@@ -157,7 +157,7 @@ def name_of(solver: Any) -> str:
 
 
 def _converted(name: str, answer: Any, shape: tuple[int, ...]) -> Array:
-    """The answer as an array of floats of this shape; ValueError if it is none."""
+    """Find the answer as an array of floats of this shape; ValueError if it is none."""
     wanted = f"wanted is Δθ, one number per joint: an array of shape {shape}"
     if answer is None:
         raise ValueError(f"{name} gave back nothing (has it a return?); {wanted}")

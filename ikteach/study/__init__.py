@@ -16,7 +16,7 @@ from ikteach.motion import Track, reachable, track
 from ikteach.motion.checks import checked
 from ikteach.motion.live.log import Log, of_run, same_targets
 from ikteach.motion.methods import Methods, methods_of
-from ikteach.motion.reach.packages import Body, backs_reach
+from ikteach.motion.reach.packages import ReachingFigure, backs_reach
 from ikteach.motion.reach.reaching import Reaching, trial
 from ikteach.motion.reach.ways import WAYS, Way, Ways, advance
 from ikteach.names import unknown
@@ -442,7 +442,7 @@ def reaches(cursors: ArrayLike, ways: Mapping[str, Way] = WAYS, **options: Any) 
     unsettled      share that still moves at the end and does not repeat itself
     options        go to `motion.reach.trial`
     """
-    body, rows = Body(), {}
+    body, rows = ReachingFigure(), {}
     for name, way in Ways.of(ways).items():
         run = trial(body, cursors, way, **options)
         ticks = run.ticks[run.arrived]
@@ -467,7 +467,7 @@ def follow(cursors: ArrayLike, way: Way, ticks: int | None = None, **options: An
     largest step [°]   of a joint, the neck's left out
     options            go to `motion.ways.advance`
     """
-    body, places = Body(), numbers("the cursors", cursors)
+    body, places = ReachingFigure(), numbers("the cursors", cursors)
     if ticks is not None:
         if places.shape != (3,):
             raise ValueError(f"for some ticks a cursor is x, y and z, not of shape {places.shape}")

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 from ikteach import SOLVERS, cramer, dls_following, figures, step, track
 from ikteach.motion.gait import walking
 from ikteach.motion.live.session import Session
-from ikteach.motion.mix import Each, Mix
+from ikteach.motion.mix import Mix, PerPose
 from ikteach.solvers import (
     adjugate,
     ask,
@@ -226,7 +226,7 @@ def doors(solver):
         "step": lambda: step(TREE, TREE.rest, EFFECTORS, GOAL, solver),
         "track": lambda: track(TREE, EFFECTORS, np.stack([GOAL] * 2), solver),
         "Mix": lambda: step(TREE, TREE.rest, EFFECTORS, GOAL, mix),
-        "Each": lambda: step(TREE, [TREE.rest] * 2, EFFECTORS, GOAL, Each(["dls", solver])),
+        "PerPose": lambda: step(TREE, [TREE.rest] * 2, EFFECTORS, GOAL, PerPose(["dls", solver])),
         "Session": lambda: Session(methods={"mine": solver}, method="mine").tick(),
     }
 

@@ -54,7 +54,7 @@ def arrives(figure: Figure, cursor: Array) -> bool:
 
 
 def _wrapped(angle: Array) -> Array:
-    """The same angle from −π to π."""
+    """Find the same angle from −π to π."""
     return (angle + np.pi) % (2 * np.pi) - np.pi
 
 
@@ -65,10 +65,16 @@ class PlanarReach(Reaching):
     """
 
     def __init__(
-        self, links: int = 3, methods: Methods = SOLVERS, *, method: str | None = None,
-        parts: int = PARTS, max_step: float | None = MAX_STEP, dt: float = 1 / 30,
+        self,
+        links: int = 3,
+        methods: Methods = SOLVERS,
+        *,
+        method: str | None = None,
+        parts: int = PARTS,
+        max_step: float | None = MAX_STEP,
+        dt: float = 1 / 30,
         cursor: ArrayLike = (0.5, 0.6, 0.0),
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.figure = planar_model(links)
         self.tree, self.effectors = self.figure
         named = methods_of(methods)
@@ -108,9 +114,14 @@ class PlanarReach(Reaching):
             return ask(self.ways[name], J, e / self.parts)
 
         done = step(
-            self.tree, theta, self.effectors, self.cursor[None], solve,
-            max_step=self.max_step, limits=clip if packaged else hold,
-        )  # fmt: skip
+            self.tree,
+            theta,
+            self.effectors,
+            self.cursor[None],
+            solve,
+            max_step=self.max_step,
+            limits=clip if packaged else hold,
+        )
         gap = self.cursor - locate(forward(self.tree, done.theta), self.effectors)[0]
         J = square(self.figure, theta, done.J, done.e)[0] if packaged else done.J[:2]
         det, independent, sigma = figures_of(J, packaged)
