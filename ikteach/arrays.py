@@ -13,13 +13,13 @@ ArrayLike: TypeAlias = npt.ArrayLike
 
 
 def frozen(values: ArrayLike, dtype: Any = float) -> Any:
-    """A copy of `values` that cannot be written to."""
+    """Copy `values` into an array that cannot be written to."""
     array = np.array(values, dtype=dtype)
     array.setflags(write=False)
     return array
 
 
 def finite(values: Array) -> bool:
-    """Whether no number is infinite or NaN."""
+    """Find whether no number is infinite or NaN."""
     # One product tells of most arrays; only where it is not finite must each number be looked at.
     return isfinite(np.vdot(values, values)) or bool(np.isfinite(values).all())

@@ -1,6 +1,7 @@
 """What is refused at the doors: one sentence each, the culprit's name and what is allowed."""
 
 from collections.abc import Callable
+from math import isfinite
 from numbers import Real
 from typing import Any
 
@@ -60,7 +61,12 @@ def function(name: str, value: Any) -> Callable[..., Any]:
 def system(J: Any, e: Any) -> tuple[Array, Array]:
     """Make arrays of floats of J (..., m, n) and e (..., m); ValueError says what does not fit."""
     common = type(J) is type(e) is np.ndarray and J.dtype is e.dtype is FLOAT
-    if common and J.shape[:-1] == e.shape != () and finite(J) and finite(e):
+    if (
+        common
+        and J.shape[:-1] == e.shape != ()
+        and isfinite(np.vdot(J, J))
+        and isfinite(np.vdot(e, e))
+    ):
         return J, e
     J, e = matrix(J), numbers("e", e)
     if e.shape[-1:] != J.shape[-2:-1]:
@@ -83,7 +89,7 @@ def matrix(J: ArrayLike) -> Array:
 
 
 def together(what: str, *batches: tuple[int, ...]) -> tuple[int, ...]:
-    """The batch that all of these fit into; ValueError says which they are."""
+    """Find the batch that all of these fit into; ValueError says which they are."""
     sizes = set(batches) - {()}
     if len(sizes) <= 1:  # the common case
         return sizes.pop() if sizes else ()
@@ -95,7 +101,7 @@ def together(what: str, *batches: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def shown(value: object) -> str:
-    """A value as a sentence shows it: on one line, and not longer than that."""
+    """Show a value as a sentence has it: on one line, and not longer than that."""
     try:
         text = " ".join(repr(value).split())
     except Exception:  # a stranger's __repr__ may raise anything

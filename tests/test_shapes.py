@@ -14,17 +14,18 @@ import pytest
 from ikteach import Effectors, Frames, Step, Track, Tree, figures, motion, solvers
 from ikteach import body as bodies
 from ikteach.body import forward, jacobian, locate
-from ikteach.body.jacobian import cross
-from ikteach.body.tree import Plan, skew
+from ikteach.body.cross import cross
+from ikteach.body.plan import Plan, skew
 from ikteach.motion import gait, per_chain, reachable, step, track, whole
 from ikteach.motion.anatomy import Anatomy, anatomy
 from ikteach.motion.live.log import Log
 from ikteach.motion.live.session import Session
 from ikteach.motion.mix import Mix
 from ikteach.motion.reachable import nearest
-from ikteach.motion.step import clamp_error
+from ikteach.motion.rules import clamp_error
 from ikteach.solvers import adjugate, cramer, determinant, ellipsoid, independence, sdls
-from ikteach.solvers.response import Directions, directions, factors, filtered, response
+from ikteach.solvers.dls import filtered
+from ikteach.solvers.response import Directions, directions, factors, response
 from ikteach.solvers.sdls import hard, lengths, soft
 
 TREE, EFFECTORS = figures.human()

@@ -38,7 +38,7 @@ def extent(tree: Tree, effectors: Effectors) -> Extent:
 
 
 def _swept(tree: Tree, effectors: Effectors, lower: Array, upper: Array) -> tuple[Array, Array]:
-    """A ball in the world for each joint and effector: centres c (m, 3), radii r (m,).
+    """Make a ball in the world for each joint and effector: centres c (m, 3), radii r (m,).
 
     Each begins as a point and grows on its way to the ground. A hinge sweeps it along an arc: the
     smallest ball around an arc of radius ρ and half angle h < π/2 stands on its chord and has the
@@ -75,7 +75,7 @@ def _swept(tree: Tree, effectors: Effectors, lower: Array, upper: Array) -> tupl
 
 
 def _smallest(c: Array, r: Array) -> Extent:
-    """The smallest ball around balls, nearly: go towards the farthest of them, ever less.
+    """Find the smallest ball around balls, nearly: go towards the farthest of them, ever less.
 
     Source: Bădoiu and Clarkson, Smaller core-sets for balls, 2003.
     """

@@ -26,7 +26,9 @@ class Figure(NamedTuple):
 
 
 def planar_arm(links: int | Sequence[float] = 3) -> Figure:
-    """An arm in the plane z = 0, stretched along x: so many links of 1 m, or links of these [m].
+    """Make an arm of links [m] in the plane z = 0, stretched along x.
+
+    Given a number, each link is 1 m long.
 
     Its effector is "hand", at the end of the last link. Its joints turn without limits.
     ValueError for lengths that are no numbers above 0, or more than 1000 of them.
@@ -74,7 +76,7 @@ def double_y() -> Figure:
             name = f"{side}.{branch}"
 
             def place(links: int, x: int = x, rise: float = rise) -> Vector:
-                """The point so many links along the branch."""
+                """Find the point that is `links` links along the branch."""
                 return (x * (fork + links * steep), -0.5 + fork + links * rise, 0)
 
             rows += [
@@ -89,7 +91,7 @@ def double_y() -> Figure:
 
 
 def human() -> Figure:
-    """A human of 1.80 m with 20 hinges, pelvis at the origin, x left, y up, z forward.
+    """Make a human of 1.80 m with 20 hinges, pelvis at the origin, x left, y up, z forward.
 
     Two hinges in the spine, four in each arm, five in each leg; the effectors are the balls of the
     feet and the hands, in the order of the thesis. Lengths are shares of the body's height after
@@ -111,7 +113,7 @@ def human() -> Figure:
 
 
 def heels(tree: Tree) -> Effectors:
-    """The heels of `human().tree`, for footprints: they reach for nothing."""
+    """Find the heels of `human().tree`, for footprints: they reach for nothing."""
     heel = (0, -0.0702, -0.0684)
     return Effectors.of(tree, {f"heel.{side}": (f"ankle.{side}", heel) for side in "lr"})
 
@@ -122,7 +124,7 @@ TOGETHER = (("back.lower", "back.upper"),)
 
 
 def simulator() -> Figure:
-    """The figure of CS 490: 16 degrees of motion in 17 hinges, pelvis at the origin.
+    """Make the figure of CS 490: 16 degrees of motion in 17 hinges, pelvis at the origin.
 
     Each shoulder has two hinges (about y, which swings the arm round, then about x, which raises
     it), each elbow, knee and ankle one, each hip two, the neck one, which nods. The back has two
@@ -146,7 +148,7 @@ def simulator() -> Figure:
 
 
 def planar_model(links: int = 3) -> Figure:
-    """The earlier stage of CS 490: an arm in the plane with limits, of at most three links.
+    """Make the earlier stage of CS 490: an arm in the plane with limits, of at most three links.
 
     They are 0.5, 0.4 and 0.3 m long; the effector "hand" is at the end of the last.
     ValueError for another number of links.
@@ -158,18 +160,23 @@ def planar_model(links: int = 3) -> Figure:
         raise ValueError(f"the planar model has 1, 2 or 3 links, not {shown(links)}") from None
     joints = [
         Joint(
-            f"joint{i + 1}", f"joint{i}" if i else None, (lengths[i - 1] if i else 0, 0, 0), Z,
-            lower=radians(-limits[i]), upper=radians(limits[i]), rest=radians(rest[i]),
+            f"joint{i + 1}",
+            f"joint{i}" if i else None,
+            (lengths[i - 1] if i else 0, 0, 0),
+            Z,
+            lower=radians(-limits[i]),
+            upper=radians(limits[i]),
+            rest=radians(rest[i]),
         )
         for i in range(links)
-    ]  # fmt: skip
+    ]
     tree = Tree.of(joints)
     hand = (joints[-1].name, (lengths[links - 1], 0, 0))
     return Figure(tree, Effectors.of(tree, {"hand": hand}))
 
 
 def _lengths(links: int | Sequence[float]) -> list[float]:
-    """The lengths of an arm's links [m]."""
+    """Find the lengths of an arm's links [m]."""
     try:
         lengths = np.ones(count("links", links, 1, MOST)) if np.ndim(links) == 0 else links
         lengths = numbers("links", lengths)
@@ -226,7 +233,7 @@ def _leg(side: str, x: int) -> list[Joint]:
 
 
 def _feet_and_hands(tree: Tree) -> Effectors:
-    """The balls of the feet and the hands, in the order of the thesis."""
+    """Find the balls of the feet and the hands, in the order of the thesis."""
     ball, hand = (0, -0.0702, 0.1286), (0, -0.3612, 0)
     points = {
         "foot.l": ("ankle.l", ball),
@@ -246,17 +253,22 @@ def _hinge(
     upper: float,
     rest: float = 0.0,
 ) -> Joint:
-    """A hinge with its limits and its rest in degrees."""
+    """Make a hinge with its limits and its rest in degrees."""
     return Joint(
-        name, parent, offset, axis,
-        lower=radians(lower), upper=radians(upper), rest=radians(rest),
-    )  # fmt: skip
+        name,
+        parent,
+        offset,
+        axis,
+        lower=radians(lower),
+        upper=radians(upper),
+        rest=radians(rest),
+    )
 
 
 def _in_world(
     rows: Sequence[tuple[str, str | None, Vector, Vector]], ends: dict[str, tuple[str, Vector]]
 ) -> Figure:
-    """A figure whose rows are given as Buss gives them: by their places in the world at θ = 0."""
+    """Make a figure of rows by their places in the world at θ = 0, as Buss has them."""
     places: dict[str | None, Vector] = {name: place for name, _, place, _ in rows}
     places[None] = (0, 0, 0)
 

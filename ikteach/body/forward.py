@@ -31,24 +31,23 @@ class Frames(NamedTuple):
 
 
 def forward(tree: Tree, theta: ArrayLike) -> Frames:
-    """The frames of all joints at pose θ (..., n) [rad, or m for slides].
+    """Find the frames of all joints at pose θ (..., n) [rad, or m for slides].
 
-    All joints of one depth are joined to their parents by one stacked product, a batch of poses
-    with them. Of long chains (`tree.DEEP`) every row first holds the last 1, 2, 4 … transforms, so
-    that 64 joints take six rounds and not 63.
+    Each step of the climb joins all joints of one depth to their parents by one stacked product,
+    a batch of poses with them (`body.plan`).
     ValueError if θ has another shape, or a number that is not finite.
     Source: thesis section 3.1; MATHS "Tree, forward kinematics, Jacobian".
     """
-    T = _in_parent(tree, pose(tree, theta))
-    for rows, above in tree.plan.climbs:
-        low = T[..., rows, :, :]
-        low[...] = T.take(above, axis=-3)[..., :4] @ low
-    T = T.take(tree.plan.rank, axis=-3)
+    theta, plan = pose(tree, theta), tree.plan
+    T = plan.local(theta)  # [R(v, θ) offset v; 0 1 0], each in its parent's frame
+    for T_j, T_parent in plan.climb(T):
+        T_j[...] = T_parent @ T_j  # R_parent R(v, θ), p_parent + R_parent offset, R_parent v
+    T = T.take(plan.inverse, axis=-3)
     return Frames(T[..., :3, 3], T[..., :3, 4], T[..., :3, :3])
 
 
 def locate(frames: Frames, effectors: Effectors) -> Array:
-    """Positions s_i = p_j + R_j offset_i of the effectors, (..., k, 3) [m]."""
+    """Find the positions s_i = p_j + R_j offset_i of the effectors, (..., k, 3) [m]."""
     fits(effectors, frames)
     p = frames.positions.take(effectors.joints, axis=-2)
     R = frames.orientations.take(effectors.joints, axis=-3)
@@ -56,7 +55,7 @@ def locate(frames: Frames, effectors: Effectors) -> Array:
 
 
 def pose(tree: Tree, theta: ArrayLike) -> Array:
-    """θ (..., n) as an array, if it is a pose of this tree; ValueError says what is wrong."""
+    """Make an array of θ (..., n), if it is a pose of this tree; ValueError if not."""
     if not isinstance(tree, Tree):
         raise TypeError(f"a Tree is needed here, not {shown(tree)}")
     theta, n = numbers("theta", theta), len(tree)
@@ -69,7 +68,7 @@ def pose(tree: Tree, theta: ArrayLike) -> Array:
 
 
 def fits(effectors: Effectors, frames: Frames) -> None:
-    """Refuse what are no effectors, or no frames of a body with as many joints as theirs."""
+    """Refuse frames that are not of a body of these effectors."""
     if not isinstance(effectors, Effectors):
         raise TypeError(f"Effectors are needed here, not {shown(effectors)}")
     if not isinstance(frames, Frames):
@@ -80,18 +79,5 @@ def fits(effectors: Effectors, frames: Frames) -> None:
 
 
 def not_finite(values: Array, names: tuple[str, ...]) -> str:
-    """The name of the first of values (..., n) that is not finite."""
+    """Name the first of values (..., n) that is not finite."""
     return shown(names[int(np.argwhere(~np.isfinite(values))[0][-1])])
-
-
-def _in_parent(tree: Tree, theta: Array) -> Array:
-    """[R p v; 0 1 0] of each joint in its parent's frame, (..., n, 4, 5), in the plan's order."""
-    plan = tree.plan
-    theta = theta.take(plan.order, axis=-1)
-    x = np.empty((*theta.shape, 3 + plan.slides))  # 1, sin θ, cos θ and, for slides, θ
-    x[..., 0] = 1
-    np.sin(theta, out=x[..., 1])
-    np.cos(theta, out=x[..., 2])
-    if plan.slides:
-        x[..., 3] = theta
-    return np.vecmat(x, plan.terms).reshape(*theta.shape, 4, 5)

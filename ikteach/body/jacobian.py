@@ -3,17 +3,16 @@
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike
+from ikteach.body.cross import across_joints, cross, down_effectors
 from ikteach.body.forward import Frames, fits, locate
 from ikteach.body.tree import Effectors, Tree
 from ikteach.checks import numbers, together
-
-YZXY = np.array([1, 2, 0, 1])
 
 
 def jacobian(
     tree: Tree, frames: Frames, effectors: Effectors, *, at: ArrayLike | None = None
 ) -> Array:
-    """J (..., 3k, n) [m/rad; 1 for slides]: row 3i + c is coordinate c of effector i.
+    """Find J (..., 3k, n) [m/rad; 1 for slides]: row 3i + c is coordinate c of effector i.
 
     The column of a hinge j that carries effector i is v_j × (s_i − p_j), of a slide v_j, and zero
     where j does not carry i. `at` (..., k, 3) [m] puts other points in place of the s_i: with the
@@ -21,19 +20,19 @@ def jacobian(
     ValueError if shapes do not fit.
     """
     s = locate(frames, effectors) if at is None else _points(frames, effectors, at)
-    if (n := frames.positions.shape[-2]) != len(tree):
+    k, n = effectors.carried.shape
+    if n != len(tree.names):
         raise ValueError(f"these frames are of {n} joints, not of {len(tree)}")
-    v, p = frames.axes.mT, frames.positions.mT  # (..., 3, n), side by side
-    arms = s.take(YZXY, axis=-1)[..., None] - p.take(YZXY, axis=-2)[..., None, :, :]
-    columns = cross(v.take(YZXY, axis=-2)[..., None, :, :], arms)  # (..., k, 3, n)
+    s, p, v = down_effectors(s), across_joints(frames.positions), across_joints(frames.axes)
+    columns = cross(v, s - p)  # (..., k, 3, n)
     if tree.plan.slides:
-        columns = np.where(tree.slide, v[..., None, :, :], columns)
+        columns = np.where(tree.slide, frames.axes.mT[..., None, :, :], columns)
     columns *= effectors.mask
-    return columns.reshape(*columns.shape[:-3], 3 * len(effectors), len(tree))
+    return columns.reshape(*columns.shape[:-3], 3 * k, n)
 
 
 def _points(frames: Frames, effectors: Effectors, at: ArrayLike) -> Array:
-    """A point (..., k, 3) per effector, as an array."""
+    """Make an array of one point per effector, (..., k, 3)."""
     fits(effectors, frames)
     at, k = numbers("at", at), len(effectors)
     if at.shape[-2:] != (k, 3):
@@ -41,14 +40,3 @@ def _points(frames: Frames, effectors: Effectors, at: ArrayLike) -> Array:
     if at.ndim != 2 != frames.positions.ndim:
         together("frames and at", frames.positions.shape[:-2], at.shape[:-2])
     return at
-
-
-def cross(a: Array, b: Array) -> Array:
-    """a × b of vectors in columns, each given as y, z, x and again y: (..., 4, n) to (..., 3, n).
-
-    a × b = (a_y b_z − a_z b_y, a_z b_x − a_x b_z, a_x b_y − a_y b_x): so ordered, the factors of
-    all three are slices.
-    """
-    product = a[..., :3, :] * b[..., 1:, :]
-    product -= a[..., 1:, :] * b[..., :3, :]
-    return product

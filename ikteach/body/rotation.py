@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ikteach.arrays import Array, ArrayLike
+from ikteach.arrays import Array
 
 TINY = 1e-150  # keeps 0 / 0 away where start and end are one
 EY = np.array([0.0, 1, 0])
@@ -31,13 +31,3 @@ def sticks(start: Array, end: Array) -> Array:
     M[..., 0] *= sign
     M[..., 1], M[..., 3] = along, start
     return M
-
-
-def quaternion_from_y(direction: ArrayLike) -> tuple[float, float, float, float]:
-    """The quaternion (x, y, z, w) that turns the y axis to `direction` (3,) the shortest way."""
-    x, y, z = np.asarray(direction, dtype=float) / np.linalg.norm(direction)
-    if y < -1 + 1e-12:
-        return (1.0, 0.0, 0.0, 0.0)
-    q = np.array([z, 0.0, -x, 1 + y])
-    x, y, z, w = q / np.linalg.norm(q)
-    return (float(x), float(y), float(z), float(w))

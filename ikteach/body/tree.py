@@ -13,11 +13,11 @@ from numbers import Real
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Index, Mask, frozen
+from ikteach.body.plan import Plan
 from ikteach.checks import numbers, shown
 from ikteach.names import unknown
 
 GROUND = -1
-DEEP = 8  # joints in a chain, from which on fewer rounds are worth more products
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class Tree:
 
     @classmethod
     def of(cls, joints: Iterable[Joint]) -> "Tree":
-        """The tree of these rows; ValueError or LookupError names the row that is wrong."""
+        """Make the tree of these rows; ValueError or LookupError names the row that is wrong."""
         if not isinstance(joints, Iterable):
             raise TypeError(f"a tree is made of Joints, not of {shown(joints)}")
         rows = list(joints)
@@ -100,9 +100,9 @@ class Tree:
         )
 
     @cached_property
-    def plan(self) -> "Plan":
-        """What `forward` needs of the tree at every call and θ does not change."""
-        return Plan.of(self)
+    def plan(self) -> Plan:
+        """The joints in the order in which `forward` climbs them."""
+        return Plan.of(self.parents, self.offsets, self.axes, self.slide)
 
     @cached_property
     def free(self) -> bool:
@@ -113,7 +113,7 @@ class Tree:
         return len(self.names)
 
     def index(self, name: str) -> int:
-        """The row of the joint called `name`; LookupError suggests what may have been meant."""
+        """Find the row of the joint called `name`; LookupError suggests another."""
         try:
             return self.names.index(name)
         except ValueError:
@@ -129,7 +129,7 @@ class Tree:
         return np.where(free, (theta + np.pi) % (2 * np.pi) - np.pi, theta)
 
     def above(self, joint: int) -> list[int]:
-        """The joint and all it hangs from, up to the ground."""
+        """Find the joint and all it hangs from, up to the ground."""
         chain = []
         while joint != GROUND:
             chain.append(joint)
@@ -157,7 +157,7 @@ class Effectors:
 
     @classmethod
     def of(cls, tree: Tree, points: Mapping[str, tuple[str, Sequence[float]]]) -> "Effectors":
-        """The effectors {name: (joint, offset)} of `tree`; any number, on any joint."""
+        """Make the effectors {name: (joint, offset)} of `tree`, on any joints."""
         if not isinstance(tree, Tree):
             raise TypeError(f"a Tree is needed here, not {shown(tree)}")
         if not isinstance(points, Mapping):
@@ -192,77 +192,8 @@ class Effectors:
         return len(self.names)
 
 
-@dataclass(frozen=True, eq=False)
-class Plan:
-    """The tree put in order of depth for `forward`.
-
-    order   (n,)         the joints, those that hang from the ground first
-    rank    (n,)         its inverse: the row of joint j
-    climbs               the rounds in which rows are joined to what is above them: a range of rows,
-                         and the row that each of them is multiplied by
-    terms   (n, 3, 20)   in the plan's order: what 1, sin θ and cos θ are multiplied by to make
-                         [R p v; 0 1 0] (4, 5), each joint in its parent's frame; (n, 4, 20) with
-                         θ itself if there are slides
-    slides               whether there are
-    """
-
-    order: Index
-    rank: Index
-    climbs: tuple[tuple[slice, Index], ...]
-    terms: Array
-    slides: bool
-
-    @classmethod
-    def of(cls, tree: Tree) -> "Plan":
-        """The plan of `tree`."""
-        chains = [tree.above(joint) for joint in range(len(tree))]
-        depth = np.array([len(chain) for chain in chains])
-        order = np.argsort(depth, kind="stable")
-        rank = np.argsort(order)
-        deepest = int(depth.max())
-        # Each round: the rows deeper than `over` and down to `down`, by those `height` above them.
-        if deepest <= DEEP:  # level by level, each row joined once
-            rounds = [(over, over + 1, 1) for over in range(1, deepest)]
-        else:  # pointer doubling: rows hold the last 1, 2, 4 … transforms of their chains
-            rounds = [(2**r, deepest, 2**r) for r in range((deepest - 1).bit_length())]
-        climbs = []
-        for over, down, height in rounds:
-            rows = slice(int((depth <= over).sum()), int((depth <= down).sum()))
-            above = [rank[chains[joint][height]] for joint in order[rows]]
-            climbs.append((rows, frozen(above, np.intp)))
-        slides = bool(tree.slide.any())
-        return cls(
-            order=frozen(order, np.intp),
-            rank=frozen(rank, np.intp),
-            climbs=tuple(climbs),
-            terms=frozen(_terms(tree)[order, : 3 + slides]),
-            slides=slides,
-        )
-
-
-def _terms(tree: Tree) -> Array:
-    """(n, 4, 20): what 1, sin θ, cos θ and θ are multiplied by in [R p v; 0 1 0]."""
-    v, slide = tree.axes, tree.slide[:, None, None]
-    vvT = v[:, :, None] * v[:, None, :]
-    terms = np.zeros((4, len(tree), 4, 5))
-    along, turn, across, travel = terms
-    along[:, :3, :3] = np.where(slide, np.eye(3), vvT)
-    along[:, :3, 3], along[:, 3, 3], along[:, :3, 4] = tree.offsets, 1, v
-    turn[:, :3, :3] = np.where(slide, 0, skew(v))
-    across[:, :3, :3] = np.where(slide, 0, np.eye(3) - vvT)
-    travel[:, :3, 3] = np.where(tree.slide[:, None], v, 0)
-    return terms.swapaxes(0, 1).reshape(len(tree), 4, 20)
-
-
-def skew(v: Array) -> Array:
-    """[v]×, the matrix with [v]× w = v × w: (..., 3) to (..., 3, 3)."""
-    x, y, z = np.moveaxis(v, -1, 0)
-    o = np.zeros_like(x)
-    return np.stack([o, -z, y, z, o, -x, -y, x, o], axis=-1).reshape(*v.shape, 3)
-
-
 def _chains(carried: Mask) -> list[int]:
-    """Number the connected groups of joints; one effector connects all joints that carry it."""
+    """Give a number to each connected group of joints (an effector connects them)."""
     chains = np.full(carried.shape[1], -1)
     for i, row in enumerate(carried):
         met = set(chains[row]) - {-1}
@@ -283,8 +214,9 @@ def _check(row: Joint, above: Mapping[str, int], names: Sequence[str]) -> None:
     if row.parent is not None and row.parent not in list(above):
         if row.parent in names:
             raise ValueError(f"{who} hangs from {parent}, which is not above it")
-        raise ValueError(f"{who} hangs from {parent}, but there is "
-                         + unknown("joint", row.parent, names))  # fmt: skip
+        raise ValueError(
+            f"{who} hangs from {parent}, but there is " + unknown("joint", row.parent, names)
+        )
     _check_vector(f"the offset of {who}", row.offset)
     _check_vector(f"the axis of {who}", row.axis)
     if not np.any(row.axis):

@@ -2,13 +2,16 @@
 
 from ikteach.motion import gait
 from ikteach.motion.gait import Gait
+from ikteach.motion.live.session import Session
 from ikteach.motion.reachable import reachable
-from ikteach.motion.step import BUSS_CAPS, Step, clip, hold, ignore, per_chain, step, whole
+from ikteach.motion.rules import BUSS_CAPS, clip, hold, ignore, per_chain, whole
+from ikteach.motion.step import Step, step
 from ikteach.motion.track import Track, growing_clamp, track
 
 __all__ = [
     "BUSS_CAPS",
     "Gait",
+    "Session",
     "Step",
     "Track",
     "clip",

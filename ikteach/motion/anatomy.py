@@ -2,12 +2,11 @@
 
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from ikteach.arrays import Array, ArrayLike, Mask
 from ikteach.body import Effectors, Tree, forward, locate
+from ikteach.motion.checks import solver_of
 from ikteach.motion.methods import Methods, methods_of
-from ikteach.motion.step import clamp_error, solver_of, step, whole
+from ikteach.motion.step import step
 from ikteach.solvers import SOLVERS, Solver, name_of
 from ikteach.solvers.response import directions, response
 
@@ -57,9 +56,15 @@ class Anatomy(NamedTuple):
 
 
 def anatomy(
-    tree: Tree, theta: ArrayLike, effectors: Effectors, targets: ArrayLike, solver: Solver | str,
-    *, methods: Methods = SOLVERS, **options: Any,
-) -> Anatomy:  # fmt: skip
+    tree: Tree,
+    theta: ArrayLike,
+    effectors: Effectors,
+    targets: ArrayLike,
+    solver: Solver | str,
+    *,
+    methods: Methods = SOLVERS,
+    **options: Any,
+) -> Anatomy:
     """Take one step of `solver` apart, from one pose θ (n,) and targets (k, 3) [m].
 
     methods  whose responses are shown beside it; if one of them has the solver's name and is
@@ -69,13 +74,7 @@ def anatomy(
     done = step(tree, theta, effectors, targets, solver, **options)
     if done.theta.ndim != 1:
         raise ValueError(f"one pose is taken apart at a time, not {done.theta.shape[:-1]} of them")
-    given = {"mobility": None, "max_error": None, "max_step": None, "cap": whole} | options
-    free = tree.mobility if given["mobility"] is None else np.asarray(given["mobility"], float)
-    J, e, capped = done.J * free, done.e, done.wanted
-    if given["max_error"] is not None:
-        e = clamp_error(e.reshape(-1, 3), given["max_error"]).ravel()
-    if given["max_step"] is not None:
-        capped = given["cap"](done.wanted, given["max_step"], effectors.chains)
+    J, e = done.J * done.mobility, done.aim
     chosen, function = methods_of(methods), solver_of(solver)
     name = next((name for name, one in chosen.items() if one is function), name_of(function))
     if chosen.get(name, function) is not function:
@@ -84,10 +83,20 @@ def anatomy(
     before = locate(forward(tree, theta), effectors)
     d = directions(J, e)
     return Anatomy(
-        name, e, J, free, d.U, d.sigma, d.Vt, d.alpha,
+        name,
+        e,
+        J,
+        done.mobility,
+        d.U,
+        d.sigma,
+        d.Vt,
+        d.alpha,
         {name: response(one, J, e) for name, one in chosen.items()},
-        done.wanted, capped, done.dtheta, done.held,
+        done.wanted,
+        done.allowed,
+        done.dtheta,
+        done.held,
         predicted=(done.J @ done.dtheta).reshape(-1, 3),
         actual=locate(forward(tree, done.theta), effectors) - before,
         theta=done.theta,
-    )  # fmt: skip
+    )

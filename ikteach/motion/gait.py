@@ -79,14 +79,14 @@ class Gait:
                 raise ValueError(f"{of} must be from 0 to 1, not {shown(value)}")
 
     def __call__(self, T: ArrayLike) -> Array:
-        """The targets at gait times T (...) [s], (..., 4, 3) [m], seen from the pelvis.
+        """Find the targets at gait times T (...) [s], (..., 4, 3) [m], seen from the pelvis.
 
         Order: left foot, right foot, right hand, left hand. Source: thesis 5.1, 5.2.
         """
         return self.at(self.speed * numbers("T", T))
 
     def at(self, phase: ArrayLike) -> Array:
-        """The targets where the argument of the sine is `phase` (...) [rad], (..., 4, 3) [m]."""
+        """Find the targets at sin(`phase`), phase (...) [rad], (..., 4, 3) [m]."""
         phase = numbers("the phase", phase)
         if not np.isfinite(phase).all():
             raise ValueError("the phase of a gait must be finite")
@@ -99,7 +99,7 @@ class Gait:
         return targets
 
     def on(self, tree: Tree, effectors: Effectors) -> Course:
-        """This gait for a body, in its size and from its pelvis.
+        """Fit this gait to a body, in its size and from its pelvis.
 
         A body with the limbs of a human in other proportions is given the lengths as they are.
         ValueError if one of its effectors is no foot and no hand.
@@ -120,7 +120,7 @@ class Gait:
         return Course(self.at if ours else at, float(pelvis[1] + unit * ground), unit)
 
     def clock(self, frames: int, dt: float = 1 / 30) -> Array:
-        """The gait time T at the end of each tick, (frames,) [s]."""
+        """Find the gait time T at the end of each tick, (frames,) [s]."""
         leaps = np.arange(1.0, count("frames", frames, least=0) + 1) // self.slowdown
         return self.step_frequency * number("dt", dt) * self.slowdown * leaps
 
@@ -147,7 +147,7 @@ class Gait:
         return moved
 
     def mobility(self, tree: Tree) -> Array:
-        """The tree's mobility with the wound in it, (n,); LookupError for an unknown joint."""
+        """Find the tree's mobility with the wound in it, (n,); LookupError for an unknown joint."""
         s = tree.mobility.copy()
         for joint, value in self.wound.items():
             s[tree.index(joint)] = value
@@ -155,13 +155,27 @@ class Gait:
 
 
 walking = Gait(
-    "walking", speed=5.6, back_z_leg=-0.25, front_z_leg=0.25, back_y_leg=-0.88, front_y_leg=-0.88,
-    hand_z=0.3, back_y_hand=-0.2, front_y_hand=-0.2,
-)  # fmt: skip
+    "walking",
+    speed=5.6,
+    back_z_leg=-0.25,
+    front_z_leg=0.25,
+    back_y_leg=-0.88,
+    front_y_leg=-0.88,
+    hand_z=0.3,
+    back_y_hand=-0.2,
+    front_y_hand=-0.2,
+)
 running = Gait(
-    "running", speed=9.0, back_z_leg=-0.5, front_z_leg=0.5, back_y_leg=-1.1, front_y_leg=-1.1,
-    hand_z=1.0, back_y_hand=0.0, front_y_hand=0.0,
-)  # fmt: skip
+    "running",
+    speed=9.0,
+    back_z_leg=-0.5,
+    front_z_leg=0.5,
+    back_y_leg=-1.1,
+    front_y_leg=-1.1,
+    hand_z=1.0,
+    back_y_hand=0.0,
+    front_y_hand=0.0,
+)
 
 
 def stature(tree: Tree, effectors: Effectors) -> tuple[float, Array] | None:
@@ -187,7 +201,7 @@ def stature(tree: Tree, effectors: Effectors) -> tuple[float, Array] | None:
 
 
 def _limbs(tree: Tree, effectors: Effectors, names: Iterable[str]) -> list[Array]:
-    """The links (links, 3) from the ground to each of these effectors, at θ = 0 [m]."""
+    """Find the links (links, 3) from the ground to each of these effectors, at θ = 0 [m]."""
     rows = [effectors.names.index(name) for name in names]
     return [
         np.array([*tree.offsets[tree.above(int(effectors.joints[i]))[::-1]], effectors.offsets[i]])
@@ -206,7 +220,7 @@ MOTIONS = Motions(walking=walking, running=running)
 
 
 def displayed(theta: ArrayLike, *, times: ArrayLike = 1.0, plus: ArrayLike = 0.0) -> Array:
-    """The pose that the thesis draws for a wounded body: θ × weight + weight, joint by joint.
+    """Find the pose that the thesis draws for a wounded body: θ × weight + weight, joint by joint.
 
     The solver never hears of it (thesis 5.1.1, 5.2.3), so that what is drawn misses targets that
     what is logged has reached. `Gait.wound` says it to the solver instead.

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, TypeAlias
 
 from ikteach.checks import shown
-from ikteach.motion.step import solver_of
+from ikteach.motion.checks import solver_of
 from ikteach.solvers import Solver, name_of
 
 LONG = 40  # letters of a method's name
@@ -42,7 +42,7 @@ def methods_of(methods: Methods) -> dict[str, Solver]:
 
 
 def _free(name: str, taken: Iterable[str]) -> str:
-    """The name, or with a number behind it the first that is not taken."""
+    """Find the name, or with a number behind it the first that is not taken."""
     name, number = name[: LONG - 3], 1
     numbered = name
     while numbered in taken:

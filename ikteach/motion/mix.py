@@ -8,7 +8,7 @@ import numpy as np
 from ikteach.arrays import Array, frozen
 from ikteach.body import Effectors
 from ikteach.checks import shown
-from ikteach.motion.step import solver_of
+from ikteach.motion.checks import solver_of
 from ikteach.names import unknown
 from ikteach.solvers import Solver, ask, name_of
 
@@ -33,7 +33,7 @@ class Mix:
 
     @classmethod
     def of(cls, effectors: Effectors, methods: Mapping[str, Solver | str]) -> "Mix":
-        """The mix for these effectors; LookupError for an effector or method that is not there."""
+        """Make the mix for these effectors; LookupError for an unknown name."""
         if not isinstance(methods, Mapping):
             raise TypeError(f"a mix is made of {{effector: method}}, not of {shown(methods)}")
         for name in methods:
@@ -59,7 +59,7 @@ class Mix:
         return f"Mix({each})"
 
 
-class Each:
+class PerPose:
     """A solver for a batch of poses: pose i of J (p, m, n) and e (p, m) by the i-th method.
 
     It serves for one `step`. Where that asks again because of limits, only the poses whose J is

@@ -72,14 +72,14 @@ class Path:
         return cls(curve, name, **others)  # type: ignore[arg-type]
 
     def at(self, phase: float) -> Array:
-        """The targets at that phase [rad], (k, 3) [m]; ValueError if the curve gives none."""
+        """Find the targets at that phase [rad], (k, 3) [m]; ValueError if the curve gives none."""
         targets = numbers(f"targets of {self.name!r}", self.curve(phase))
         if targets.ndim != 2 or targets.shape[-1] != 3:
             raise ValueError(f"{self.name!r} must give targets (k, 3), not {targets.shape}")
         return targets
 
     def on(self, tree: Tree, effectors: Effectors) -> "Course":
-        """This motion for a body; ValueError if it has not a target for each effector."""
+        """Fit this motion to a body; ValueError if it has not a target for each effector."""
         targets = self.at(0.0)
         if len(targets) != len(effectors):
             raise ValueError(
@@ -91,7 +91,7 @@ class Path:
         return Course(self.at, float(points[:, 1].min()))
 
     def mobility(self, tree: Tree) -> Array:
-        """The tree's mobility with the wound in it, (n,); LookupError for an unknown joint."""
+        """Find the tree's mobility with the wound in it, (n,); LookupError for an unknown joint."""
         s = tree.mobility.copy()
         for joint, value in self.wound.items():
             s[tree.index(joint)] = value
@@ -113,7 +113,7 @@ class Course:
 
 
 def swinging(tree: Tree, effectors: Effectors) -> Path:
-    """The path on which a body's effectors go when all its joints swing about their rest.
+    """Find the path on which a body's effectors go when all its joints swing about their rest.
 
     So every target is within reach at every moment, of any body. Joints at an odd depth swing
     twice as often, that hands do not come back the way they went.

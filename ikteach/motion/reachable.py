@@ -15,7 +15,7 @@ import numpy as np
 from ikteach.arrays import Array, ArrayLike, Mask
 from ikteach.body import Effectors, Tree, forward, jacobian, locate
 from ikteach.checks import number
-from ikteach.motion.step import checked
+from ikteach.motion.checks import checked
 from ikteach.solvers import dls
 
 NEAR = 1e-3  # of a chain's length: what is so near is reached
@@ -93,7 +93,7 @@ class _Limb(NamedTuple):
 
 
 def _limb(tree: Tree, effectors: Effectors, i: int) -> _Limb:
-    """The joints that carry effector i; hinges that can get to every angle lose their limits."""
+    """Find the joints that carry effector i, full turns without limits."""
     rows = np.array(sorted(tree.above(int(effectors.joints[i]))))
     free = ~tree.slide[rows] & (tree.upper[rows] - tree.lower[rows] >= FREE)
     names, offsets = tuple(tree.names[row] for row in rows), tree.offsets[rows]
@@ -134,7 +134,7 @@ def _tolerance(tree: Tree, effectors: Effectors, targets: Array) -> Array:
 
 
 def _search(tree: Tree, effectors: Effectors, targets: Array, near: ArrayLike) -> Array:
-    """The least distance (..., k) found to targets (..., k, 3); enough is `near` (..., k)."""
+    """Find the least distance (..., k) found to targets (..., k, 3); enough is `near` (..., k)."""
     out = np.empty(targets.shape[:-1])
     enough = np.broadcast_to(near, out.shape)
     for i in range(len(effectors)):
@@ -147,7 +147,7 @@ def _search(tree: Tree, effectors: Effectors, targets: Array, near: ArrayLike) -
 
 
 def _volleys(limb: _Limb, goals: Array, near: Array) -> Array:
-    """The least distance (g,) found for goals (g, 3) from the rest pose, then random ones."""
+    """Find the least distance (g,) found for goals (g, 3) from the rest pose, then random ones."""
     rest, rng = np.tile(limb.tree.rest, (len(goals), 1)), np.random.default_rng(0)
     best = _descend(limb, goals, rest, near)
     for count in VOLLEYS:
@@ -189,7 +189,7 @@ def _starts(limb: _Limb, goals: Array, count: int, rng: np.random.Generator) -> 
 
 
 def _descend(limb: _Limb, goals: Array, theta: Array, near: Array) -> Array:
-    """The distance (b,) to goals (b, 3) that poses θ (b, n) come down to within their limits.
+    """Find the distance (b,) to goals (b, 3) that poses θ (b, n) come down to within their limits.
 
     Newton steps with damping: (H + λ²W) Δθ = Jᵀe. λ falls after a step that came nearer, and rises
     after one that did not, which is taken back. Joints that the slope holds at a limit stay there

@@ -12,8 +12,9 @@ import numpy as np
 from ikteach.arrays import Array, ArrayLike, Mask
 from ikteach.body import Effectors, Tree, forward, locate
 from ikteach.checks import count, function, number, numbers, shown, together
+from ikteach.motion.checks import checked, solver_of
 from ikteach.motion.rank import smallest_sigma
-from ikteach.motion.step import checked, solver_of, step
+from ikteach.motion.step import step
 from ikteach.names import unknown
 from ikteach.solvers import Solver, name_of
 
@@ -129,9 +130,18 @@ def track(
     seconds = (perf_counter() - began) / (len(targets) * iterations)
     poses, errors, shares, holds = map(np.array, kept)
     return Track(
-        name_of(chosen), tree, effectors, clock, targets, np.broadcast_to(start, np.shape(pose)),
-        poses, errors, shares, holds, seconds,
-    )  # fmt: skip
+        name_of(chosen),
+        tree,
+        effectors,
+        clock,
+        targets,
+        np.broadcast_to(start, np.shape(pose)),
+        poses,
+        errors,
+        shares,
+        holds,
+        seconds,
+    )
 
 
 OPTIONS = [  # what `track` may be told: its own, and what goes to `step` at every frame
@@ -143,7 +153,7 @@ OPTIONS = [  # what `track` may be told: its own, and what goes to `step` at eve
 
 
 def _clock(frames: int, dt: float | None, times: ArrayLike | None) -> Array:
-    """The time (T,) of each frame [s]."""
+    """Find the time (T,) of each frame [s]."""
     if times is None:
         dt = number("dt", 1 / 30 if dt is None else dt)
         if not dt:

@@ -10,9 +10,9 @@ from collections.abc import Callable
 
 from ikteach.arrays import Array
 from ikteach.names import unknown
-from ikteach.solvers.ask import ask, name_of
 from ikteach.solvers.cramer import adjugate, cramer, determinant, independence
 from ikteach.solvers.dls import dls, dls_following
+from ikteach.solvers.door import ask, name_of
 from ikteach.solvers.pseudoinverse import pseudoinverse
 from ikteach.solvers.sdls import sdls
 from ikteach.solvers.singularity import Ellipsoid, conditioning, ellipsoid, manipulability

@@ -4,8 +4,7 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike
 from ikteach.checks import matrix, number, numbers, system
-
-TINY = 1e-150  # [m/rad]; a joint that moves the effector by less does not move it
+from ikteach.solvers.stacked import NONE
 
 
 def determinant(A: ArrayLike) -> Array:
@@ -28,7 +27,7 @@ def independence(J: ArrayLike) -> Array:
     other and 0 where the ways lie in a plane. No change of units changes it, as it would det J.
     """
     unit, length = _unit_columns(_square(J))
-    return np.where((length > TINY).all(axis=-1), abs(determinant(unit)), 0)
+    return np.where((length > NONE).all(axis=-1), abs(determinant(unit)), 0)
 
 
 def cramer(J: ArrayLike, e: ArrayLike, *, least: float = 1e-6) -> Array:
@@ -44,14 +43,14 @@ def cramer(J: ArrayLike, e: ArrayLike, *, least: float = 1e-6) -> Array:
     (J, e), least = system(_square(J), e), number("least", least)
     unit, length = _unit_columns(J)
     det = determinant(unit)
-    regular = (abs(det) > least) & (length > TINY).all(axis=-1)
+    regular = (abs(det) > least) & (length > NONE).all(axis=-1)
     det = np.where(regular, det, 1)[..., None]
     dtheta = np.matvec(adjugate(unit), e) / det / length
     return np.where(regular[..., None], dtheta, 0)
 
 
 def columns(A: ArrayLike) -> tuple[Array, Array, Array]:
-    """The three columns of A (..., 3, 3), each (..., 3)."""
+    """Find the three columns of A (..., 3, 3), each (..., 3)."""
     A = _square(A)
     return A[..., 0], A[..., 1], A[..., 2]
 
@@ -64,7 +63,7 @@ def _square(A: ArrayLike) -> Array:
 
 
 def _unit_columns(J: Array) -> tuple[Array, Array]:
-    """J with columns of length 1, and their lengths (..., 3), no shorter than TINY."""
-    peak = np.maximum(abs(J).max(axis=-2), TINY)  # so that no square under- or overflows
-    length = np.maximum(peak * np.linalg.norm(J / peak[..., None, :], axis=-2), TINY)
+    """J with columns of length 1, and their lengths (..., 3), no shorter than NONE."""
+    peak = np.maximum(abs(J).max(axis=-2), NONE)  # so that no square under- or overflows
+    length = np.maximum(peak * np.linalg.norm(J / peak[..., None, :], axis=-2), NONE)
     return J / length[..., None, :], length

@@ -1,19 +1,16 @@
 """Chapter 5. Damped least squares: nearness to the target against length of the step."""
 
-from typing import Any
-
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike
-from ikteach.checks import number, numbers, shown, system, together
-
-ROUNDING = 1e-13  # of the diagonal of JJᵀ: damping below it is lost in the rounding of JJᵀ
-HUGE = 1e150  # its square is still finite
-TINY = 1e-200  # keeps JJᵀ + λ²I invertible where J is all zero
+from ikteach.checks import number, numbers
+from ikteach.solvers.door import per_pose, solver, unchecked
+from ikteach.solvers.stacked import gram, norm, plus_diagonal, solve, vecmat
 
 
-def dls(J: ArrayLike, e: ArrayLike, *, damping: ArrayLike = 0.1) -> Array:
-    """Δθ = Jᵀ (JJᵀ + λ²I)⁻¹ e, the least of ‖e − JΔθ‖² + λ²‖Δθ‖².
+@solver(damping=per_pose)
+def dls(J: Array, e: Array, *, damping: float | Array = 0.1) -> Array:
+    """Step Δθ = Jᵀ (JJᵀ + λ²I)⁻¹ e, the least of ‖e − JΔθ‖² + λ²‖Δθ‖².
 
     J        (..., m, n)  Jacobian [m/rad]
     e        (..., m)     error [m]
@@ -23,27 +20,12 @@ def dls(J: ArrayLike, e: ArrayLike, *, damping: ArrayLike = 0.1) -> Array:
     ValueError if λ is negative or not finite, or shapes do not fit.
     Source: thesis 4.4.3; Buss 2004, eq. 11.
     """
-    J, e = system(J, e)
-    # The common case is one number, and an array of one costs as much as JJᵀ does.
-    lambda2: Any
-    if type(damping) is float or np.ndim(damping) == 0:
-        one = number("damping", damping)
-        fits, lambda2 = one < HUGE, one * one + TINY
-    else:
-        each = numbers("damping", damping)
-        batch = together("J, e and damping", J.shape[:-2], e.shape[:-1], each.shape)
-        fits = bool(((each >= 0) & (each < HUGE)).all())  # NaN fits nowhere
-        lambda2 = (each * each + TINY)[..., None]
-        J = np.broadcast_to(J, (*batch, *J.shape[-2:]))
-    if not fits:
-        raise ValueError(f"damping must be 0 or more, and finite, not {shown(damping)}")
-    A, m = J @ J.mT, J.shape[-2]
-    diagonal = A.reshape(*A.shape[:-2], m * m)[..., :: m + 1]  # a view of A
-    diagonal += np.maximum(lambda2, ROUNDING * diagonal)  # A = JJᵀ + λ²I
-    return np.vecmat(np.linalg.solve(A, e[..., None])[..., 0], J)
+    A = plus_diagonal(gram(J), damping * damping)  # JJᵀ + λ²I
+    return vecmat(solve(A, e), J)
 
 
-def dls_following(J: ArrayLike, e: ArrayLike, *, share: float = 0.5, least: float = 4e-4) -> Array:
+@solver(share=number, least=number)
+def dls_following(J: Array, e: Array, *, share: float = 0.5, least: float = 4e-4) -> Array:
     """Take a step of `dls` with a damping that follows the error: λ² = (share ‖e‖)² + (least ‖J‖)².
 
     Far from the target the step is short and safe, near it the damping goes and convergence is
@@ -55,8 +37,16 @@ def dls_following(J: ArrayLike, e: ArrayLike, *, share: float = 0.5, least: floa
     Nonlinear least squares knows it as Levenberg–Marquardt with a damping in proportion to the
     residual (Sugihara 2011, IEEE Trans. Robotics 27:984). ValueError as in `dls`.
     """
-    J, e = system(J, e)
-    share, least = number("share", share), number("least", least)
-    size2 = np.add.reduce(J * J, axis=(-2, -1))  # ‖J‖²
-    damping = np.sqrt((share * share) * np.vecdot(e, e) + (least * least) * size2)
-    return dls(J, e, damping=damping)
+    damping = np.hypot(share * np.sqrt(np.vecdot(e, e)), least * norm(J))
+    return unchecked(dls)(J, e, damping=damping)
+
+
+def filtered(sigma: ArrayLike, damping: ArrayLike = 0.0) -> Array:
+    """Answer by f_i = σ_i / (σ_i² + λ²) for σ (..., r), the factors of DLS [rad/m].
+
+    Without damping it is 1 / σ_i. The largest that any σ can make of it is 1 / 2λ. Zero where σ and
+    λ are. A λ that is lost in rounding is left to `dls` to raise.
+    """
+    sigma, damping = numbers("sigma", sigma), numbers("damping", damping)
+    size = np.square(sigma) + np.square(damping)
+    return np.divide(sigma, size, out=np.zeros_like(size), where=size > 0)

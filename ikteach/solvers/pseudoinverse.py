@@ -2,15 +2,17 @@
 
 import numpy as np
 
-from ikteach.arrays import Array, ArrayLike
-from ikteach.checks import number, system
+from ikteach.arrays import Array
+from ikteach.checks import number
+from ikteach.solvers.door import solver
+from ikteach.solvers.stacked import strong, vecmat
 
-EPS = float(np.finfo(float).eps)
-TINY = 1e-150  # [m/rad]; a motion this small is none
+EPS = float(np.finfo(float).eps)  # weaker directions have come of rounding
 
 
-def pseudoinverse(J: ArrayLike, e: ArrayLike, *, cutoff: float = 0.01) -> Array:
-    """Δθ = Σ v_i (u_iᵀe) / σ_i over the singular directions with σ_i > cutoff · σ_max.
+@solver(cutoff=number)
+def pseudoinverse(J: Array, e: Array, *, cutoff: float = 0.01) -> Array:
+    """Step Δθ = Σ v_i (u_iᵀe) / σ_i over the singular directions with σ_i > cutoff · σ_max.
 
     J       (..., m, n)  Jacobian [m/rad]
     e       (..., m)     error [m]
@@ -20,9 +22,11 @@ def pseudoinverse(J: ArrayLike, e: ArrayLike, *, cutoff: float = 0.01) -> Array:
     thesis prints it. ValueError if shapes do not fit or a number is none.
     Source: thesis 4.4.2; Buss 2004, section 5.
     """
-    (J, e), cutoff = system(J, e), number("cutoff", cutoff)
     U, sigma, Vt = np.linalg.svd(J, full_matrices=False)
-    strongest = sigma[..., :1]
-    kept = sigma > np.maximum(TINY, strongest * max(cutoff, EPS))
-    alpha = np.vecmat(e, U)
-    return np.vecmat(np.where(kept, alpha / np.where(kept, sigma, 1), 0), Vt)
+    sigma = strong(sigma, max(cutoff, EPS))  # ∞ where a direction is left out
+    return vecmat(vecmat(e, U) / sigma, Vt)
+
+
+def pseudoinverse_response(sigma: Array, *, cutoff: float) -> Array:
+    """Answer by f_i = 1/σ_i, and 0 for directions weaker than cutoff · σ_max, σ (r,)."""
+    return 1 / strong(sigma, max(cutoff, EPS))

@@ -16,12 +16,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike
-from ikteach.checks import function, number, numbers, system
-from ikteach.solvers.ask import ask
-from ikteach.solvers.dls import dls
-from ikteach.solvers.pseudoinverse import pseudoinverse
-from ikteach.solvers.sdls import Clamp, bounds, hard, kept, sdls, three_rows
-from ikteach.solvers.transpose import transpose
+from ikteach.checks import number, numbers, system
+from ikteach.solvers.dls import dls, filtered
+from ikteach.solvers.door import FORMULAS, ask
+from ikteach.solvers.pseudoinverse import pseudoinverse, pseudoinverse_response
+from ikteach.solvers.sdls import SMALLEST, bounds, sdls, sdls_response, three_rows
+from ikteach.solvers.stacked import strong
+from ikteach.solvers.transpose import transpose, transpose_response
 
 
 class Directions(NamedTuple):
@@ -47,7 +48,7 @@ class Directions(NamedTuple):
 
 
 def directions(J: ArrayLike, e: ArrayLike, *, max_angle: float = pi / 4) -> Directions:
-    """The singular directions of J (..., 3k, n) with the error e (..., 3k) taken apart along them.
+    """Find the singular directions of J (..., 3k, n), and e (..., 3k) along them.
 
     M is infinite, and γ is 0, where σ is not above SDLS's smallest: those directions it leaves out.
     ValueError as in `sdls`. Source: thesis 4.4.5; Buss & Kim 2005.
@@ -57,24 +58,14 @@ def directions(J: ArrayLike, e: ArrayLike, *, max_angle: float = pi / 4) -> Dire
     U, sigma, Vt = np.linalg.svd(J, full_matrices=False)
     sign = np.where(np.vecmat(e, U) < 0, -1.0, 1.0)
     U, Vt = U * sign[..., None, :], Vt * sign[..., None]
-    used = kept(sigma)
+    used = np.isfinite(strong(sigma, SMALLEST))
     N, M, gamma = bounds(J, U, np.where(used, sigma, 1), Vt, max_angle)
     alpha = np.vecmat(e, U)
     return Directions(sigma, alpha, U, Vt, N, np.where(used, M, np.inf), np.where(used, gamma, 0))
 
 
-def filtered(sigma: ArrayLike, damping: ArrayLike = 0.0) -> Array:
-    """f_i = σ_i / (σ_i² + λ²) for σ (..., r), the factors of DLS [rad/m]; without damping 1 / σ_i.
-
-    The largest that any σ can make of it is 1 / 2λ. Zero where σ and λ are.
-    """
-    sigma, damping = numbers("sigma", sigma), numbers("damping", damping)
-    size = np.square(sigma) + np.square(damping)
-    return np.divide(sigma, size, out=np.zeros_like(size), where=size > 0)
-
-
 def factors(J: ArrayLike, e: ArrayLike, dtheta: ArrayLike, *, least: float = 1e-9) -> Array:
-    """f_i (..., r) [rad/m] of any step: Δθ = Σ f_i (u_iᵀe) v_i, for Δθ (..., n).
+    """Find f_i (..., r) [rad/m] of any step: Δθ = Σ f_i (u_iᵀe) v_i, for Δθ (..., n).
 
     The pseudoinverse has 1/σ_i, DLS σ_i / (σ_i² + λ²), the transpose α σ_i. Not a number where the
     error has no part along u_i, at most `least` of its length: there is nothing to answer.
@@ -90,62 +81,24 @@ def factors(J: ArrayLike, e: ArrayLike, dtheta: ArrayLike, *, least: float = 1e-
 
 
 def response(solver: Callable[..., Array], J: ArrayLike, e: ArrayLike) -> Array:
-    """f (r,) [rad/m] of a method: what it makes of each singular direction of J for this e.
+    """Find f (r,) [rad/m] of a method, for each singular direction of J and this e.
 
     By the formula for the four methods, also with options bound by `partial`; for any other by
     `factors` of its answer, and 0 where the error has no part.
     """
     J, e = system(J, e)
     plain, options = (solver.func, solver.keywords) if isinstance(solver, partial) else (solver, {})
-    if plain in RESPONSES and not getattr(solver, "args", ()):
-        return RESPONSES[plain](J, e, **options)
-    return np.nan_to_num(factors(J, e, ask(solver, J, e), least=1e-12))
-
-
-def of_transpose(J: Array, e: Array, *, gain: float = 1.0) -> Array:
-    """f_i = gain · a σ_i, with a = Σ σ²α² / Σ σ⁴α²: the strong directions first."""
-    d = directions(J, e)
-    s = d.sigma / max(d.sigma[0], 1e-300)  # the lengths are taken in units of σ_max
-    pull = (s * d.alpha) ** 2
-    down = float(np.sum(pull * s**2))
-    a = float(np.sum(pull)) / down if down > 0 else 0.0
-    return number("gain", gain) * a * s / max(d.sigma[0], 1e-300)
-
-
-def of_pseudoinverse(J: Array, e: Array, *, cutoff: float = 0.01) -> Array:
-    """f_i = 1/σ_i, and 0 for the directions weaker than cutoff · σ_max."""
-    sigma = directions(J, e).sigma
-    strong = sigma > max(1e-150, sigma[0] * max(number("cutoff", cutoff), np.finfo(float).eps))
-    return filtered(np.where(strong, sigma, 0))
-
-
-def of_dls(J: Array, e: Array, *, damping: float = 0.1) -> Array:
-    """f_i = σ_i / (σ_i² + λ²). A λ that is lost in rounding is left to `dls` to raise."""
-    return filtered(directions(J, e).sigma, number("damping", damping))
-
-
-def of_sdls(J: Array, e: Array, *, max_angle: float = pi / 4, clamp: Clamp = hard) -> Array:
-    """f_i = c c_i / σ_i, where c_i shortens φ_i to its own bound γ_i, and c all of Δθ to γ_max."""
-    d = directions(J, e, max_angle=max_angle)
-    function("clamp", clamp)
-    inverse = filtered(np.where(kept(d.sigma), d.sigma, 0))
-    phi = (inverse * d.alpha)[:, None] * d.Vt
-    shares = _share(clamp(phi, d.gamma), phi)
-    dtheta = shares @ phi
-    over = abs(dtheta).max() > max_angle
-    c = _share(clamp(dtheta[None], max_angle), dtheta[None])[0] if over else 1.0
-    return c * shares * inverse
-
-
-def _share(after: Array, before: Array) -> Array:
-    """By how much each row was shortened, 0..1; 1 where it is zero."""
-    size = abs(before).max(axis=-1)
-    return np.divide(abs(after).max(axis=-1), size, out=np.ones_like(size), where=size > 0)
+    if plain not in RESPONSES or (isinstance(solver, partial) and solver.args):
+        return np.nan_to_num(factors(J, e, ask(solver, J, e), least=1e-12))
+    formula = FORMULAS[plain]
+    options = {**(formula.apply.__kwdefaults__ or {}), **formula.check({**options}, J, e)}
+    d = directions(J, e, max_angle=options.get("max_angle", pi / 4))
+    return RESPONSES[plain](d, **options)
 
 
 RESPONSES: Mapping[Any, Callable[..., Array]] = {
-    transpose: of_transpose,
-    pseudoinverse: of_pseudoinverse,
-    dls: of_dls,
-    sdls: of_sdls,
+    transpose: lambda d, **options: transpose_response(d.sigma, d.alpha, **options),
+    pseudoinverse: lambda d, **options: pseudoinverse_response(d.sigma, **options),
+    dls: lambda d, **options: filtered(d.sigma, **options),
+    sdls: lambda d, **options: sdls_response(d.sigma, d.alpha, d.Vt, d.gamma, **options),
 }

@@ -28,7 +28,7 @@ class Ellipsoid(NamedTuple):
 
 
 def ellipsoid(J: ArrayLike) -> Ellipsoid:
-    """The manipulability ellipsoid {JΔθ : ‖Δθ‖ = 1} of J (..., m, n) (Yoshikawa 1985)."""
+    """Find the manipulability ellipsoid {JΔθ : ‖Δθ‖ = 1} of J (..., m, n) (Yoshikawa 1985)."""
     U, sigma, _ = np.linalg.svd(matrix(J))
     lengths = np.zeros(U.shape[:-1])
     lengths[..., : sigma.shape[-1]] = sigma

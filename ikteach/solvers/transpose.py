@@ -1,15 +1,14 @@
 """Chapter 3. The Jacobian transpose: downhill on ½‖e‖², as far as the linear model says."""
 
-import numpy as np
-
-from ikteach.arrays import Array, ArrayLike
-from ikteach.checks import number, system
-
-TINY = 1e-300  # below it a squared length is rounding, and nothing may be divided by it
+from ikteach.arrays import Array
+from ikteach.checks import number
+from ikteach.solvers.door import solver
+from ikteach.solvers.stacked import matvec, ratio, unit, vecmat
 
 
-def transpose(J: ArrayLike, e: ArrayLike, *, gain: float = 1.0) -> Array:
-    """Δθ = gain · α Jᵀe, with α = ⟨e, JJᵀe⟩ / ⟨JJᵀe, JJᵀe⟩.
+@solver(gain=number)
+def transpose(J: Array, e: Array, *, gain: float = 1.0) -> Array:
+    """Step Δθ = gain · α Jᵀe, with α = ⟨e, JJᵀe⟩ / ⟨JJᵀe, JJᵀe⟩.
 
     J     (..., m, n)  Jacobian [m/rad]
     e     (..., m)     error [m]
@@ -18,11 +17,13 @@ def transpose(J: ArrayLike, e: ArrayLike, *, gain: float = 1.0) -> Array:
     Returns (..., n) [rad]; zero where Jᵀe is, that is where no joint helps.
     ValueError if shapes do not fit or a number is none. Source: thesis 4.4.1; Buss 2004, eq. 10.
     """
-    (J, e), gain = system(J, e), number("gain", gain)
-    JTe = np.vecmat(e, J)
-    size = np.maximum.reduce(abs(JTe), axis=-1, keepdims=True, initial=TINY)
-    g = JTe / size  # α is the same for any length
-    Jg = np.matvec(J, g)
-    gg, JgJg = np.vecdot(g, g)[..., None], np.vecdot(Jg, Jg)[..., None]
-    alpha = np.divide(gg, JgJg, out=np.zeros_like(gg), where=JgJg > TINY)
+    JTe = vecmat(e, J)
+    g = unit(JTe)  # α is the same for any length of Jᵀe
+    alpha = ratio(g, matvec(J, g))  # ⟨e, JJᵀe⟩ = ⟨Jᵀe, Jᵀe⟩
     return gain * alpha * JTe
+
+
+def transpose_response(sigma: Array, alpha: Array, *, gain: float) -> Array:
+    """Answer u_iᵀe = alpha (r,) by f_i = gain · α σ_i: the strong directions first."""
+    g = unit(sigma * alpha)
+    return gain * ratio(g, sigma * g) * sigma

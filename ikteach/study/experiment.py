@@ -11,9 +11,11 @@ from ikteach.body import Effectors, Tree, forward, jacobian, locate
 from ikteach.body.tree import GROUND
 from ikteach.checks import count as whole_number
 from ikteach.checks import number, numbers, shown, together
+from ikteach.motion.checks import checked
 from ikteach.motion.live.log import of_run
 from ikteach.motion.methods import Methods, methods_of
-from ikteach.motion.step import Cap, checked, step, whole
+from ikteach.motion.rules import Cap, whole
+from ikteach.motion.step import step
 from ikteach.motion.track import Track
 from ikteach.solvers import SOLVERS, Solver, name_of, transpose
 

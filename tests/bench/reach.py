@@ -8,14 +8,14 @@ cap, to see the largest step of a joint in one tick, then with the simulator's c
 import sys
 
 from ikteach import study
-from ikteach.motion.reach.packages import Body
+from ikteach.motion.reach.packages import ReachingFigure
 from ikteach.motion.reach.reaching import reachable_cursors
 from ikteach.motion.reach.ways import MAX_STEP, PARTS
 
 
 def main(cursors=2000, ticks=300):
     """Print a table for each cap."""
-    places = reachable_cursors(Body(), cursors)
+    places = reachable_cursors(ReachingFigure(), cursors)
     for cap, words in ((None, "no cap"), (MAX_STEP, "no joint turns more than 10° a tick")):
         print(f"{cursors} cursors, n = {PARTS} parts, {words}")
         table = study.reaches(places, ticks=ticks, max_step=cap)

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from strategies import SEEDS, SHAPES, anybody, poses
 
 from ikteach import figures, forward, jacobian, locate
-from ikteach.body.jacobian import YZXY, cross
+from ikteach.body.cross import YZXY, cross
 
 H = 1e-5  # the error of a central difference is of order H²
 

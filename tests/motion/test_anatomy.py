@@ -24,7 +24,7 @@ from ikteach import (
 )
 from ikteach.motion.anatomy import anatomy
 from ikteach.motion.mix import Mix
-from ikteach.motion.step import per_chain
+from ikteach.motion.rules import per_chain
 from ikteach.solvers.response import directions, response
 from ikteach.solvers.sdls import soft
 

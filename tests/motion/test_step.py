@@ -25,7 +25,7 @@ from ikteach import (
     step,
 )
 from ikteach.motion import BUSS_CAPS, clip, hold, ignore, per_chain, whole
-from ikteach.motion.step import clamp_error
+from ikteach.motion.rules import clamp_error
 
 HUMAN = figures.human()
 METHODS = st.sampled_from([*SOLVERS, partial(dls, damping=0), partial(pseudoinverse, cutoff=0)])

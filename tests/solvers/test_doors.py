@@ -1,7 +1,7 @@
 """What goes into a solver and what comes out of it: anything made of numbers, or a sentence."""
 
 from fractions import Fraction
-from functools import partial
+from functools import partial, wraps
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 from ikteach import SOLVERS, cramer, dls_following, figures, step, track
 from ikteach.motion.gait import walking
 from ikteach.motion.live.session import Session
-from ikteach.motion.mix import Each, Mix
+from ikteach.motion.mix import Mix, PerPose
 from ikteach.solvers import (
     adjugate,
     ask,
@@ -226,7 +226,7 @@ def doors(solver):
         "step": lambda: step(TREE, TREE.rest, EFFECTORS, GOAL, solver),
         "track": lambda: track(TREE, EFFECTORS, np.stack([GOAL] * 2), solver),
         "Mix": lambda: step(TREE, TREE.rest, EFFECTORS, GOAL, mix),
-        "Each": lambda: step(TREE, [TREE.rest] * 2, EFFECTORS, GOAL, Each(["dls", solver])),
+        "PerPose": lambda: step(TREE, [TREE.rest] * 2, EFFECTORS, GOAL, PerPose(["dls", solver])),
         "Session": lambda: Session(methods={"mine": solver}, method="mine").tick(),
     }
 
@@ -282,6 +282,30 @@ def test_a_batch_wants_a_batch():
     )
     done = step(TREE, poses, EFFECTORS, GOAL, lambda J, e: np.zeros((3, 20)))
     assert done.theta.shape == (3, 20)
+
+
+def test_a_solver_in_the_clothes_of_another_is_asked_itself():
+    @wraps(SOLVERS["dls"])
+    def mine(J, e):
+        return np.ones(20)
+
+    assert_allclose(step(TREE, TREE.rest, EFFECTORS, GOAL, mine).wanted, 1)
+
+
+@pytest.mark.parametrize("solver", [*SOLVERS.values(), dls_following], ids=name_of)
+def test_the_short_way_to_ours_is_the_way_of_all(solver):
+    for J_, e_ in ((J, E), (np.stack([J, 2 * J]), E), (J, np.stack([E, -E]))):
+        assert_allclose(ask(solver, J_, e_), solver(J_, e_), rtol=0, atol=0)
+        assert_allclose(ask(lambda J, e: solver(J, e), J_, e_), solver(J_, e_), rtol=0, atol=0)
+    with pytest.raises(ValueError, match="J is not finite"):
+        ask(solver, np.where(J == 2, np.nan, J), E)
+
+
+def test_a_damping_per_pose_of_one_J():
+    dls, each = SOLVERS["dls"], np.array([[0.1, 0.2], [0.3, 0.0]])
+    many = dls(J, E, damping=each)
+    for i in np.ndindex(2, 2):
+        assert_allclose(many[i], dls(J, E, damping=each[i]), rtol=1e-12)
 
 
 class Odd:

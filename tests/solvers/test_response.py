@@ -7,7 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from ikteach import dls, figures, forward, jacobian, pseudoinverse, sdls, transpose
-from ikteach.solvers.response import directions, factors, filtered
+from ikteach.solvers.dls import filtered
+from ikteach.solvers.response import directions, factors
 from ikteach.solvers.sdls import hard
 from ikteach.study.experiment import starts
 

@@ -4,14 +4,14 @@ import numpy as np
 
 from ikteach.body import forward, jacobian, locate
 from ikteach.course.checking import Answer, exercise, expect
-from ikteach.motion.reach.packages import Body
+from ikteach.motion.reach.packages import ReachingFigure
 
 LOW, HIGH = np.radians([-30.0, 60.0])
 
 
-def poses() -> list[tuple[Body, np.ndarray, np.ndarray, np.ndarray]]:
+def poses() -> list[tuple[ReachingFigure, np.ndarray, np.ndarray, np.ndarray]]:
     """The simulator's body, degrees of motion q (16,), J (3, 16) of a hand, a wish (16,)."""
-    body, rng, made = Body(), np.random.default_rng(10), []
+    body, rng, made = ReachingFigure(), np.random.default_rng(10), []
     low, high = body.tree.lower[body.rows], body.tree.upper[body.rows]
     for _ in range(6):
         q = rng.uniform(low, high)

@@ -20,12 +20,14 @@ from ikteach.arrays import Array, ArrayLike, frozen
 from ikteach.body import Frames, forward, locate
 from ikteach.body.extent import extent
 from ikteach.body.figures import Figure, human
+from ikteach.checks import numbers
+from ikteach.motion.checks import checked, solver_of
 from ikteach.motion.gait import LIMBS, Gait, stature, walking
 from ikteach.motion.live.log import Event, Log, Moment
 from ikteach.motion.methods import Methods, methods_of
-from ikteach.motion.mix import Each, Mix
+from ikteach.motion.mix import Mix, PerPose
 from ikteach.motion.path import Path, swinging
-from ikteach.motion.step import checked, numbers, solver_of, step
+from ikteach.motion.step import step
 from ikteach.motion.track import Track
 from ikteach.names import unknown
 from ikteach.solvers import SOLVERS, Solver, dls, name_of
@@ -234,7 +236,7 @@ class Session:
         time, phase, advance, targets = self.ahead()
         options = self.options | {"max_step": self._max_steps()}
         to = step(
-            self.tree, self._poses, self.effectors, targets, Each(self.methods.values()),
+            self.tree, self._poses, self.effectors, targets, PerPose(self.methods.values()),
             mobility=self.gait.mobility(self.tree), frames=self.frames, **options,
         )  # fmt: skip
         self._stand(to.theta)

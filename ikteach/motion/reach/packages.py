@@ -34,10 +34,14 @@ class Package(NamedTuple):
 
 def _packages() -> tuple[Package, ...]:
     sides = (("right", "r"), ("left", "l"))
-    arms = (Package(f"{word} arm", s, (f"shoulder.y.{s}", f"shoulder.x.{s}", f"elbow.{s}"))
-            for word, s in sides)  # fmt: skip
-    backs = (Package(f"{word} arm and back", s, (f"shoulder.y.{s}", f"shoulder.x.{s}", "back"))
-             for word, s in sides)  # fmt: skip
+    arms = (
+        Package(f"{word} arm", s, (f"shoulder.y.{s}", f"shoulder.x.{s}", f"elbow.{s}"))
+        for word, s in sides
+    )
+    backs = (
+        Package(f"{word} arm and back", s, (f"shoulder.y.{s}", f"shoulder.x.{s}", "back"))
+        for word, s in sides
+    )
     return (*arms, *backs)
 
 
@@ -45,7 +49,7 @@ PACKAGES = _packages()  # two arms, then two arms with the back, the right one f
 
 
 def degrees(tree: Tree) -> tuple[str, ...]:
-    """The names of the degrees of motion: rows that turn together (`figures.TOGETHER`) are one."""
+    """Name the degrees of motion; rows of `figures.TOGETHER` are one."""
     return tuple(dict.fromkeys(map(_degree, tree.names)))
 
 
@@ -62,12 +66,12 @@ def coupling(tree: Tree) -> Array:
 
 
 def _degree(row: str) -> str:
-    """The degree of motion that turns a row: `back.lower` and `back.upper` are turned by `back`."""
+    """Name the degree that turns a row: of `back.lower` it is `back`."""
     shared = any(row in rows for rows in TOGETHER)
     return row.split(".")[0] if shared else row
 
 
-class Body:
+class ReachingFigure:
     """The simulator's figure with what its arms are: lengths [m], rows, degrees of motion."""
 
     def __init__(self) -> None:
@@ -88,11 +92,11 @@ class Body:
         return np.asarray(self.C.argmax(axis=0))
 
     def columns(self, names: tuple[str, ...]) -> Array:
-        """The columns of C of these degrees of motion, (n, 3) for three."""
+        """Find the columns of C of these degrees of motion, (n, 3) for three."""
         return self.C[:, [self.degrees.index(name) for name in names]]
 
     def arm(self, side: str) -> Index:
-        """The rows of φ, a and b."""
+        """Find the rows of φ, a and b."""
         names = f"shoulder.y.{side}", f"shoulder.x.{side}", f"elbow.{side}"
         return np.array([self.tree.index(name) for name in names])
 
@@ -116,26 +120,26 @@ def places(point: ArrayLike) -> Array:
     return array
 
 
-def in_chest(body: Body, point: ArrayLike, back: ArrayLike) -> Array:
-    """The point (..., 3) in the frame of the chest, with the back turned by s = `back` (...)."""
+def in_chest(body: ReachingFigure, point: ArrayLike, back: ArrayLike) -> Array:
+    """Find the point (..., 3) seen from the chest, the back turned by s = `back` (...)."""
     back = numbers("back", back)
     low = about_x(-back, places(point) - [0, body.waist, 0])
     return about_x(-back, low - [0, body.segment, 0])
 
 
-def by_columns(body: Body, theta: ArrayLike, package: Package) -> Array:
+def by_columns(body: ReachingFigure, theta: ArrayLike, package: Package) -> Array:
     """J (..., 3, 3) of a package at pose θ (..., n), from the geometric columns, J C."""
     J = jacobian(body.tree, forward(body.tree, theta), body.hands[package.side])
     return J @ body.columns(package.degrees)
 
 
-def by_differences(body: Body, theta: ArrayLike, package: Package) -> Array:
+def by_differences(body: ReachingFigure, theta: ArrayLike, package: Package) -> Array:
     """J (..., 3, 3) of a package at pose θ (..., n), from central differences."""
     J = partials.by_differences(body.tree, theta, body.hands[package.side])
     return J @ body.columns(package.degrees)
 
 
-def by_hand(body: Body, theta: ArrayLike, package: Package) -> Array:
+def by_hand(body: ReachingFigure, theta: ArrayLike, package: Package) -> Array:
     """J (..., 3, 3) of a package at pose θ (..., n), from partial derivatives worked out by hand.
 
     ∂r/∂a = −y,  ∂y/∂a = r,  ∂r/∂b = L₂ cos (a + b),  ∂y/∂b = L₂ sin (a + b), and for the back
@@ -172,7 +176,7 @@ def by_hand(body: Body, theta: ArrayLike, package: Package) -> Array:
     return np.stack([about_x(2 * s, d_phi), about_x(2 * s, d_a), d_s], axis=-1)
 
 
-def arm_reaches(body: Body, side: str, point: ArrayLike, back: ArrayLike) -> Mask:
+def arm_reaches(body: ReachingFigure, side: str, point: ArrayLike, back: ArrayLike) -> Mask:
     """Whether φ, a and b within their limits put the hand to point (..., 3): (...).
 
     `back` (...) is the angle s of the back. The elbow follows from the law of cosines, the rest
@@ -192,19 +196,19 @@ def arm_reaches(body: Body, side: str, point: ArrayLike, back: ArrayLike) -> Mas
     return inside
 
 
-def _allowed(body: Body, side: str, angles: Array) -> Mask:
+def _allowed(body: ReachingFigure, side: str, angles: Array) -> Mask:
     rows = body.arm(side)
     angles = (angles + np.pi) % (2 * np.pi) - np.pi
     low, high = body.tree.lower[rows], body.tree.upper[rows]
     return np.asarray(((angles >= low) & (angles <= high)).all(axis=-1))
 
 
-def back_angles(body: Body) -> Array:
-    """The angles s of the back from limit to limit, (SEARCH,)."""
+def back_angles(body: ReachingFigure) -> Array:
+    """Find the angles s of the back from limit to limit, (SEARCH,)."""
     return np.linspace(body.tree.lower[body.back], body.tree.upper[body.back], SEARCH)
 
 
-def back_reaches(body: Body, side: str, point: ArrayLike) -> Mask:
+def back_reaches(body: ReachingFigure, side: str, point: ArrayLike) -> Mask:
     """Whether shoulder and back put the hand to point (..., 3), the elbow being at rest: (...).
 
     The arm is then as long as it is; the back has to bring the shoulder to just that distance.
@@ -219,19 +223,21 @@ def back_reaches(body: Body, side: str, point: ArrayLike) -> Mask:
     return np.asarray((passes & (turns[..., 1:] | turns[..., :-1])).any(axis=-1))
 
 
-def both_reach(body: Body, side: str, point: ArrayLike) -> Mask:
+def both_reach(body: ReachingFigure, side: str, point: ArrayLike) -> Mask:
     """Whether some pose of arm and back together puts the hand to point (..., 3): (...)."""
     point = places(point)[..., None, :]
     return np.asarray(arm_reaches(body, side, point, back_angles(body)).any(axis=-1))
 
 
-def backs_reach(body: Body, cursor: ArrayLike) -> Mask:
+def backs_reach(body: ReachingFigure, cursor: ArrayLike) -> Mask:
     """`back_reaches` for both sides, right first: (..., 2) for cursor (..., 3)."""
     return np.stack([back_reaches(body, side, cursor) for side in "rl"], axis=-1)
 
 
-def choose(body: Body, cursor: ArrayLike, back: ArrayLike, backs: Mask | None = None) -> Index:
-    """The number of the package that answers to cursor (..., 3), (...); NONE (-1) where none does.
+def choose(
+    body: ReachingFigure, cursor: ArrayLike, back: ArrayLike, backs: Mask | None = None
+) -> Index:
+    """Choose the package that answers to cursor (..., 3): (...), NONE (-1) for none.
 
     An arm answers where it reaches by itself from where the back, turned by `back` (...), has put
     its shoulder; else arm and back do where they reach; in the middle nothing does. `backs` is
@@ -246,8 +252,8 @@ def choose(body: Body, cursor: ArrayLike, back: ArrayLike, backs: Mask | None = 
     return np.where(answers.any(axis=-1), answers.argmax(axis=-1), NONE)
 
 
-def look(body: Body, cursor: ArrayLike, back: ArrayLike, eyes: float = 0.15) -> Array:
-    """The nod (...) of the neck that turns the face to cursor (..., 3), within its limits.
+def look(body: ReachingFigure, cursor: ArrayLike, back: ArrayLike, eyes: float = 0.15) -> Array:
+    """Find the nod (...) of the neck that turns the face to cursor (..., 3), within its limits.
 
     Trigonometry alone: the eyes are so far above the neck [m], and their line of sight, at right
     angles to it, is to meet the cursor. The head does not turn sideways.

@@ -18,7 +18,8 @@ from ikteach.motion.reach.packages import NONE
 from ikteach.motion.reach.reaching import Reaching
 from ikteach.motion.reach.ways import MAX_STEP, NEAR, PARTS, SINGULAR, Tick, figures_of
 from ikteach.motion.reachable import reachable
-from ikteach.motion.step import clip, hold, step
+from ikteach.motion.rules import clip, hold
+from ikteach.motion.step import step
 from ikteach.solvers import SOLVERS, Solvers, ask, cramer, independence
 
 ROOM = np.array([[-1.3, -1.0, 0.0], [1.3, 1.3, 0.0]])  # where a cursor can be [m]
@@ -53,7 +54,7 @@ def arrives(figure: Figure, cursor: Array) -> bool:
 
 
 def _wrapped(angle: Array) -> Array:
-    """The same angle from −π to π."""
+    """Find the same angle from −π to π."""
     return (angle + np.pi) % (2 * np.pi) - np.pi
 
 
@@ -64,10 +65,16 @@ class PlanarReach(Reaching):
     """
 
     def __init__(
-        self, links: int = 3, methods: Methods = SOLVERS, *, method: str | None = None,
-        parts: int = PARTS, max_step: float | None = MAX_STEP, dt: float = 1 / 30,
+        self,
+        links: int = 3,
+        methods: Methods = SOLVERS,
+        *,
+        method: str | None = None,
+        parts: int = PARTS,
+        max_step: float | None = MAX_STEP,
+        dt: float = 1 / 30,
         cursor: ArrayLike = (0.5, 0.6, 0.0),
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.figure = planar_model(links)
         self.tree, self.effectors = self.figure
         named = methods_of(methods)
@@ -95,23 +102,28 @@ class PlanarReach(Reaching):
         self._somehow = self._aimed or bool(reachable(*self.figure, self.cursor[None])[0])
 
     def _advance(self, name: str) -> Tick:
-        theta, told = self.standing[name].tick.theta, np.full(3, np.nan)
+        theta = self.standing[name].tick.theta
         packaged = name == "cramer"
 
         def solve(J: Array, e: Array) -> Array:
             if packaged:
                 J, e = square(self.figure, theta, J, e)
-            told[:] = figures_of(J if packaged else J[:2], packaged)
             lost = packaged and not (self._aimed and independence(J) > SINGULAR)
             if lost or np.linalg.norm(e) <= NEAR:
                 return np.zeros(len(theta))
             return ask(self.ways[name], J, e / self.parts)
 
         done = step(
-            self.tree, theta, self.effectors, self.cursor[None], solve,
-            max_step=self.max_step, limits=clip if packaged else hold,
-        )  # fmt: skip
+            self.tree,
+            theta,
+            self.effectors,
+            self.cursor[None],
+            solve,
+            max_step=self.max_step,
+            limits=clip if packaged else hold,
+        )
         gap = self.cursor - locate(forward(self.tree, done.theta), self.effectors)[0]
-        det, independent, sigma = told
+        J = square(self.figure, theta, done.J, done.e)[0] if packaged else done.J[:2]
+        det, independent, sigma = figures_of(J, packaged)
         package = np.asarray(NONE if packaged and not self._aimed else 0)
         return Tick(done.theta, package, det, independent, sigma, np.asarray(np.linalg.norm(gap)))

@@ -15,7 +15,14 @@ from ikteach.arrays import Array, ArrayLike, Index, Mask
 from ikteach.body import Effectors, Tree
 from ikteach.checks import count as count_of
 from ikteach.checks import number, numbers, shown
-from ikteach.motion.reach.packages import MIDDLE, NONE, PACKAGES, Body, backs_reach, both_reach
+from ikteach.motion.reach.packages import (
+    MIDDLE,
+    NONE,
+    PACKAGES,
+    ReachingFigure,
+    backs_reach,
+    both_reach,
+)
 from ikteach.motion.reach.ways import (
     ARRIVED,
     MAX_STEP,
@@ -73,7 +80,7 @@ class Standing:
         self.begin()
 
     def begin(self) -> None:
-        """The cursor has moved: count from now."""
+        """Count from now on, as the cursor has moved."""
         self.ticks = self.period = 0
         self.arrived: int | None = None
         self.largest = self.moves = 0.0
@@ -123,7 +130,7 @@ class Standing:
 
 
 def placed(cursor: ArrayLike, room: Array) -> Array:
-    """The cursor (3,) [m], or the place nearest to it between the corners of the room (2, 3)."""
+    """Bring the cursor (3,) [m] between the corners of the room (2, 3)."""
     place = numbers("the cursor", cursor)
     if place.shape != (3,) or not np.isfinite(place).all():
         raise ValueError(f"a cursor is three finite numbers, not {shown(cursor)}")
@@ -149,9 +156,15 @@ class Reaching:
     neck: int | None = None  # a joint whose steps do not count: it only looks on
 
     def __init__(
-        self, ways: Mapping[str, Any], room: Array, method: str, parts: int,
-        max_step: float | None, dt: float, cursor: ArrayLike,
-    ) -> None:  # fmt: skip
+        self,
+        ways: Mapping[str, Any],
+        room: Array,
+        method: str,
+        parts: int,
+        max_step: float | None,
+        dt: float,
+        cursor: ArrayLike,
+    ) -> None:
         self.ways, self.room = ways, room
         self.parts, self.dt = checked_parts(parts), number("dt", dt)
         self.max_step = None if max_step is None else number("max_step", max_step)
@@ -223,10 +236,16 @@ class Reach(Reaching):
     """The figure of CS 490, which reaches with the hand on the cursor's side; `ways` are `Way`s."""
 
     def __init__(
-        self, ways: Mapping[str, Way] = WAYS, *, method: str = "cramer", parts: int = PARTS,
-        max_step: float | None = MAX_STEP, dt: float = 1 / 30, cursor: ArrayLike = START,
-    ) -> None:  # fmt: skip
-        self.body = Body()
+        self,
+        ways: Mapping[str, Way] = WAYS,
+        *,
+        method: str = "cramer",
+        parts: int = PARTS,
+        max_step: float | None = MAX_STEP,
+        dt: float = 1 / 30,
+        cursor: ArrayLike = START,
+    ) -> None:
+        self.body = ReachingFigure()
         self.tree, self.neck = self.body.tree, self.body.neck
         super().__init__(Ways.of(ways), ROOM, method, parts, max_step, dt, cursor)
 
@@ -266,9 +285,14 @@ class Reach(Reaching):
 
     def _advance(self, name: str) -> Tick:
         return advance(
-            self.body, self.standing[name].tick.theta, self.cursor, self.ways[name],
-            parts=self.parts, max_step=self.max_step, backs=self._backs,
-        )  # fmt: skip
+            self.body,
+            self.standing[name].tick.theta,
+            self.cursor,
+            self.ways[name],
+            parts=self.parts,
+            max_step=self.max_step,
+            backs=self._backs,
+        )
 
     def _package(self, way: Way) -> int:
         theta = self.standing[self.method].tick.theta
@@ -300,7 +324,7 @@ class Trial(NamedTuple):
 
 
 def trial(
-    body: Body,
+    body: ReachingFigure,
     cursors: ArrayLike,
     way: Way,
     *,
@@ -328,9 +352,14 @@ def trial(
         if not len(left):
             break
         done = advance(
-            body, poses[left], goals[left], way,
-            parts=parts, max_step=max_step, backs=backs[left],
-        )  # fmt: skip
+            body,
+            poses[left],
+            goals[left],
+            way,
+            parts=parts,
+            max_step=max_step,
+            backs=backs[left],
+        )
         turned = abs(done.theta - poses[left])
         turned[:, body.neck] = 0
         moves = turned.max(axis=-1)
@@ -346,12 +375,16 @@ def trial(
         cycles[left] = period(np.array([p[np.isin(of, left)] for of, p in recent]))
     shape = cursors.shape[:-1]
     return Trial(
-        distance.reshape(shape), since.reshape(shape), largest.reshape(shape),
-        cycles.reshape(shape), settled.reshape(shape), silent.reshape(shape),
-    )  # fmt: skip
+        distance.reshape(shape),
+        since.reshape(shape),
+        largest.reshape(shape),
+        cycles.reshape(shape),
+        settled.reshape(shape),
+        silent.reshape(shape),
+    )
 
 
-def reachable_cursors(body: Body, count: int, seed: int = 0) -> Array:
+def reachable_cursors(body: ReachingFigure, count: int, seed: int = 0) -> Array:
     """So many places (count, 3) [m] where a hand can be: hands of random poses within the limits.
 
     Every one can be reached by arm and back of the side that it lies on, if not by a package.

@@ -17,18 +17,18 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Index, Mask
 from ikteach.body import forward, locate
-from ikteach.checks import function, numbers, shown
+from ikteach.checks import function, numbers, shown, together
 from ikteach.checks import number as a_number
-from ikteach.checks import together as batch_of
 from ikteach.motion.reach.packages import (
     NONE,
     PACKAGES,
-    Body,
     Package,
+    ReachingFigure,
     choose,
     look,
 )
-from ikteach.motion.step import clip, hold, step
+from ikteach.motion.rules import clip, hold
+from ikteach.motion.step import step
 from ikteach.names import unknown
 from ikteach.solvers import SOLVERS, Solver, cramer, determinant, independence, name_of
 
@@ -40,21 +40,21 @@ MAX_STEP = radians(10)  # of a joint in a tick, the same for every way
 SINGULAR = 0.01  # below this independence (`solvers.independence`) det counts as 0
 WEAK = 1e-3  # share of σ_max below which a direction counts as lost to the null space
 
-Origin = Callable[[Body, Array], Array]
+Origin = Callable[[ReachingFigure, Array], Array]
 RestRule = Callable[[Array, Array], Array]
 
 
-def here(body: Body, theta: Array) -> Array:
-    """Packages are chosen by where the cursor is seen from the shoulder as it stands now."""
+def here(body: ReachingFigure, theta: Array) -> Array:
+    """Choose packages by where the cursor is seen from the shoulder as it stands now."""
     return theta[..., body.back]
 
 
-def at_rest(body: Body, theta: Array) -> Array:
-    """Packages are chosen by where the cursor is seen from the shoulder at rest."""
+def at_rest(body: ReachingFigure, theta: Array) -> Array:
+    """Choose packages by where the cursor is seen from the shoulder at rest."""
     return np.broadcast_to(body.tree.rest[body.back], theta.shape[:-1])
 
 
-def after(J: Array, wish: Array) -> Array:
+def after_solve(J: Array, wish: Array) -> Array:
     """Joints go to rest as they wish (..., d), whatever that does to the hand (CS 490)."""
     return wish
 
@@ -76,7 +76,7 @@ class Way:
     solver    a function of (J, e); with `packaged` of the three joints of a package
     packaged  True: CS 490's packages; False: arm and back together, four degrees of motion
     origin    from where the cursor is seen when a package is chosen: `here` or `at_rest`
-    rest      how joints return to rest: `after` the solve, or in the `null_space`
+    rest      how joints return to rest: `after_solve`, or in the `null_space`
     """
 
     solver: Solver
@@ -109,7 +109,7 @@ class Ways(dict[str, Way]):
 
 WAYS = Ways(
     {
-        "cramer": Way(cramer, packaged=True, origin=here, rest=after),
+        "cramer": Way(cramer, packaged=True, origin=here, rest=after_solve),
         "cramer, mended": Way(cramer, packaged=True),
         **{name: Way(solver) for name, solver in SOLVERS.items()},
     }
@@ -137,7 +137,7 @@ class Tick(NamedTuple):
 
 
 def advance(
-    body: Body,
+    body: ReachingFigure,
     theta: ArrayLike,
     cursor: ArrayLike,
     way: Way,
@@ -156,7 +156,7 @@ def advance(
     theta, cursor = _checked(body, theta, cursor)
     checked_way(way)
     checked_parts(parts)
-    shape = batch_of("theta and the cursor", theta.shape[:-1], cursor.shape[:-1])
+    shape = together("theta and the cursor", theta.shape[:-1], cursor.shape[:-1])
     poses = np.broadcast_to(theta, (*shape, theta.shape[-1])).reshape(-1, theta.shape[-1]).copy()
     cursors = np.broadcast_to(cursor, (*shape, 3)).reshape(-1, 3)
     known = None if backs is None else np.broadcast_to(backs, (*shape, 2)).reshape(-1, 2)
@@ -169,9 +169,13 @@ def advance(
     distance = np.linalg.norm(cursors - hands(body, poses, cursors), axis=-1)
     det, independent, sigma = told.reshape(3, *shape)
     return Tick(
-        poses.reshape(*shape, -1), package.reshape(shape), det, independent, sigma,
+        poses.reshape(*shape, -1),
+        package.reshape(shape),
+        det,
+        independent,
+        sigma,
         distance.reshape(shape),
-    )  # fmt: skip
+    )
 
 
 def checked_parts(parts: int) -> int:
@@ -188,14 +192,16 @@ def checked_way(way: Way, name: str = "way") -> Way:
     return way
 
 
-def which(body: Body, theta: Array, cursor: Array, way: Way, backs: Mask | None = None) -> Index:
-    """The number of the package in use (...), or of the side where the way has no packages."""
+def which(
+    body: ReachingFigure, theta: Array, cursor: Array, way: Way, backs: Mask | None = None
+) -> Index:
+    """Find the number of the package in use (...), or of the side where the way has no packages."""
     if way.packaged:
         return choose(body, cursor, way.origin(body, theta), backs)
     return np.where(cursor[..., 0] < 0, 0, 1)
 
 
-def hands(body: Body, theta: Array, cursor: Array) -> Array:
+def hands(body: ReachingFigure, theta: Array, cursor: Array) -> Array:
     """Where the hand on the cursor's side is, (..., 3) [m]."""
     frames = forward(body.tree, theta)
     right, left = (locate(frames, body.hands[side])[..., 0, :] for side in "rl")
@@ -203,25 +209,27 @@ def hands(body: Body, theta: Array, cursor: Array) -> Array:
 
 
 def _reach(
-    body: Body, theta: Array, cursor: Array, way: Way, number: int, parts: int,
+    body: ReachingFigure,
+    theta: Array,
+    cursor: Array,
+    way: Way,
+    number: int,
+    parts: int,
     max_step: float | None,
-) -> tuple[Array, Array]:  # fmt: skip
-    """The new poses (b, n), and (det, independence, σ) (3, b), of figures that use one package."""
+) -> tuple[Array, Array]:
+    """Move figures of one package: poses (b, n); det, independence and σ (3, b)."""
     if number == NONE:
         ease = EASE if max_step is None else min(EASE, a_number("max_step", max_step))
         home = np.clip(body.tree.rest - theta, -ease, ease)
         home[:, body.neck] = 0
         return theta + home, np.full((3, len(theta)), np.nan)
-    package = PACKAGES[number] if way.packaged else together(PACKAGES[number].side)
+    package = PACKAGES[number] if way.packaged else arm_and_back(PACKAGES[number].side)
     used = body.columns(package.degrees)
     idle = homewards(body, theta, besides=package.degrees if way.packaged else ())
-    told = np.full((3, len(theta)), np.nan)
 
     def solve(J: Array, e: Array) -> Array:
         """Δθ of the method on the degrees in use, with the way to rest of the others in it."""
         ours = J @ used
-        if told[0, 0] != told[0, 0]:  # once a tick, not again where a limit holds a joint
-            told[:] = figures_of(ours, way.packaged)
         far = np.linalg.norm(e, axis=-1) > NEAR
         if way.packaged:  # and where det is near 0 the package takes no step
             far &= independence(ours) > SINGULAR
@@ -230,10 +238,15 @@ def _reach(
 
     solve.__name__ = name_of(way.solver)  # what `step` calls it where its answer is not finite
     done = step(
-        body.tree, theta, body.hands[package.side], cursor[:, None, :], solve,
-        max_step=max_step, limits=clip if way.packaged else hold,
-    )  # fmt: skip
-    return done.theta, told
+        body.tree,
+        theta,
+        body.hands[package.side],
+        cursor[:, None, :],
+        solve,
+        max_step=max_step,
+        limits=clip if way.packaged else hold,
+    )
+    return done.theta, figures_of(done.J @ used, way.packaged)
 
 
 def figures_of(J: Array, packaged: bool) -> Array:
@@ -245,14 +258,14 @@ def figures_of(J: Array, packaged: bool) -> Array:
     return np.stack([volume, np.full_like(volume, np.nan), sigma[..., -1]])
 
 
-def together(side: str) -> Package:
+def arm_and_back(side: str) -> Package:
     """Arm and back in one, four degrees of motion: what the general methods reach with."""
     arm, back = PACKAGES["rl".index(side)], "back"
     return Package(f"{arm.name} and back together", side, (*arm.degrees, back))
 
 
-def homewards(body: Body, theta: Array, besides: tuple[str, ...] = ()) -> Array:
-    """The wish (..., d) of every degree of motion to go to rest, by at most `EASE`.
+def homewards(body: ReachingFigure, theta: Array, besides: tuple[str, ...] = ()) -> Array:
+    """Find the wish (..., d) of every degree of motion to go to rest, by at most `EASE`.
 
     Those named in `besides`, and the neck, wish nothing.
     """
@@ -262,7 +275,7 @@ def homewards(body: Body, theta: Array, besides: tuple[str, ...] = ()) -> Array:
     return wish
 
 
-def _checked(body: Body, theta: ArrayLike, cursor: ArrayLike) -> tuple[Array, Array]:
+def _checked(body: ReachingFigure, theta: ArrayLike, cursor: ArrayLike) -> tuple[Array, Array]:
     theta, cursor = numbers("theta", theta), numbers("the cursor", cursor)
     n = len(body.tree)
     if theta.shape[-1:] != (n,):

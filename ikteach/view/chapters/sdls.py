@@ -12,7 +12,8 @@ from ikteach.body.figures import human
 from ikteach.markup import Markup
 from ikteach.motion import gait, step
 from ikteach.solvers import sdls
-from ikteach.solvers.response import Directions, directions, factors, filtered
+from ikteach.solvers.dls import filtered
+from ikteach.solvers.response import Directions, directions, factors
 from ikteach.view.live.bench import Bench, Canvas, Shown, log_slider, slider
 from ikteach.view.plots import bones
 from ikteach.view.stage.colours import BLUE, EFFECTOR_COLOURS, GREEN, ORANGE

@@ -16,7 +16,7 @@ from ikteach.motion.live.log import Log
 from ikteach.motion.live.session import Session
 from ikteach.motion.mix import Mix
 from ikteach.motion.reachable import annulus
-from ikteach.motion.step import clip, hold, ignore, per_chain, whole
+from ikteach.motion.rules import clip, hold, ignore, per_chain, whole
 from ikteach.solvers import SOLVERS, Solver, ellipsoid
 from ikteach.solvers.sdls import hard, soft
 from ikteach.view.chapters.gait import table, words

@@ -10,7 +10,7 @@ import ipywidgets as widgets
 from ikteach.markup import Markup, plain
 from ikteach.motion.gait import MOTIONS
 from ikteach.motion.live.session import Session
-from ikteach.motion.step import BUSS_CAPS
+from ikteach.motion.rules import BUSS_CAPS
 from ikteach.names import unknown
 from ikteach.solvers import SOLVERS, Solver
 from ikteach.view.live.controls import SLIDERS

@@ -14,7 +14,7 @@ from ikteach.motion.reach.packages import (
     MIDDLE,
     NONE,
     PACKAGES,
-    Body,
+    ReachingFigure,
     arm_reaches,
     back_reaches,
     both_reach,
@@ -35,7 +35,7 @@ from ikteach.motion.reach.ways import (
     WAYS,
     Way,
     advance,
-    after,
+    after_solve,
     at_rest,
     here,
     homewards,
@@ -43,7 +43,7 @@ from ikteach.motion.reach.ways import (
 )
 from ikteach.solvers import SOLVERS, cramer
 
-BODY = Body()
+BODY = ReachingFigure()
 TREE = BODY.tree
 packages = pytest.mark.parametrize("package", PACKAGES, ids=lambda p: p.name)
 every_way = pytest.mark.parametrize("name", WAYS)
@@ -201,12 +201,12 @@ def test_null_space_rest_leaves_the_hand_to_first_order(seed):
             )
 
         assert moved(5e-4) <= 0.26 * moved(1e-3) + 1e-12
-    assert_array_equal(after(J, wish), wish)
+    assert_array_equal(after_solve(J, wish), wish)
 
 
 def test_return_to_rest_spoils_what_the_solve_had_reached_and_the_null_space_does_not():
     """Wrong by a centimetre or so as long as joints are on their way, against a millimetre."""
-    spoilt = Way(SOLVERS["dls"], rest=after)
+    spoilt = Way(SOLVERS["dls"], rest=after_solve)
     kept = Way(SOLVERS["dls"])
     cursor = np.array([0.4, 0.1, 0.45])
     ends = [trial(BODY, cursor, way).distance for way in (spoilt, kept)]
@@ -387,7 +387,7 @@ def test_an_oscillation_is_told_while_it_runs():
     assert "oscillates" in table.loc["cramer", "how it stands"]
     # What mends it is that the package is chosen as seen from rest, and nothing else.
     for origin, oscillates in ((here, True), (at_rest, False)):
-        way = Way(cramer, packaged=True, origin=origin, rest=after)
+        way = Way(cramer, packaged=True, origin=origin, rest=after_solve)
         assert (trial(BODY, [0.4, -0.2, 0.3], way).period > 0) == oscillates
 
 
@@ -510,3 +510,16 @@ def test_planar_cramer_points_outward():
     still = reach.theta
     reach.tick()
     assert_array_equal(reach.theta, still)
+
+
+def test_sigma_is_that_of_the_pose_also_where_a_limit_holds_a_joint():
+    reach = PlanarReach(method="dls", cursor=(-0.9, -0.4, 0))
+    held = 0
+    for _ in range(40):
+        theta = reach.standing["dls"].tick.theta
+        reach.tick()
+        J = jacobian(reach.tree, forward(reach.tree, theta), reach.effectors)[:2]
+        assert reach.standing["dls"].tick.sigma == np.linalg.svdvals(J)[-1]
+        after = reach.standing["dls"].tick.theta
+        held += bool(((after == reach.tree.lower) | (after == reach.tree.upper)).any())
+    assert held

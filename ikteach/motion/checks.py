@@ -1,0 +1,94 @@
+"""What `step` and its like refuse: one sentence each, with the name of the culprit."""
+
+import numpy as np
+
+from ikteach.arrays import Array, ArrayLike, finite
+from ikteach.body import Effectors, Frames, Tree, forward
+from ikteach.body.forward import fits, not_finite, pose
+from ikteach.checks import numbers, shown, together
+from ikteach.solvers import SOLVERS, Solver
+
+
+def solver_of(solver: Solver | str) -> Solver:
+    """Get a solver by its name, or itself; LookupError for an unknown name."""
+    if isinstance(solver, str):
+        return SOLVERS[solver]
+    if not callable(solver):
+        raise TypeError(f"a solver is a function of (J, e) or a name, not {shown(solver)}")
+    return solver
+
+
+def checked(
+    tree: Tree, theta: ArrayLike, effectors: Effectors, targets: ArrayLike
+) -> tuple[Array, Array]:
+    """Make arrays of θ and targets, if shapes fit and numbers are finite."""
+    theta = pose(tree, theta)
+    fits(effectors, forward(tree, tree.rest))
+    return theta, goals(effectors, targets)
+
+
+def goals(effectors: Effectors, targets: ArrayLike) -> Array:
+    """Make an array of targets (..., k, 3), one finite point per effector."""
+    targets, k = numbers("targets", targets), len(effectors)
+    if targets.shape[-2:] != (k, 3):
+        needs = "1 effector needs" if k == 1 else f"{k} effectors need"
+        hint = "; a target is a point, and no pose" if targets.shape[-2:] == (4, 4) else ""
+        raise ValueError(f"{needs} targets of shape (..., {k}, 3), not {targets.shape}{hint}")
+    if not finite(targets):
+        culprit = not_finite(targets.swapaxes(-1, -2), effectors.names)
+        raise ValueError(f"the target of {culprit} is not finite")
+    return targets
+
+
+def bound(name: str, bound: ArrayLike | None) -> Array | None:
+    """Make an array of a bound that is 0 or more, or None."""
+    if bound is None:
+        return None
+    array = numbers(name, bound)
+    if not (array >= 0).all():
+        raise ValueError(f"{name} must be 0 or more, not {shown(bound)}")
+    return array
+
+
+def mobility_of(tree: Tree, mobility: ArrayLike) -> Array:
+    """Make an array of mobilities (..., n), each from 0 to 1."""
+    s = numbers("mobility", mobility)
+    if s.shape[-1:] != (len(tree),):
+        raise ValueError(f"mobility needs one number per joint, ({len(tree)},), not {s.shape}")
+    bad = ~((s >= 0) & (s <= 1))
+    if bad.any():
+        culprit = tree.names[int(np.argwhere(bad)[0][-1])]
+        raise ValueError(f"the mobility of {shown(culprit)} must be from 0 to 1")
+    return s
+
+
+def frames_of(tree: Tree, theta: ArrayLike, frames: Frames | None) -> Frames:
+    """Get the frames of a pose, or check those that are given for it."""
+    if frames is None:
+        return forward(tree, theta)  # which checks θ
+    if isinstance(frames, Frames) and frames.positions.shape != (*pose(tree, theta).shape, 3):
+        given = frames.positions.shape[:-1]
+        raise ValueError(f"frames are of poses {given}, not {np.shape(theta)}")
+    return frames
+
+
+def error_bound(effectors: Effectors, max_error: ArrayLike | None) -> Array | None:
+    """Make an array of max_error, one number or (..., k), or None."""
+    array, k = bound("max_error", max_error), len(effectors)
+    if array is not None and array.shape[-1:] not in ((), (1,), (k,)):
+        raise ValueError(f"max_error needs one number, or (..., {k}), not {array.shape}")
+    return array
+
+
+def batch_of(
+    theta: Array, targets: Array, free: Array, max_step: Array | None, max_error: Array | None
+) -> tuple[int, ...]:
+    """Find the batch of all that is given; ValueError if its parts do not fit."""
+    if max_step is None and max_error is None and theta.ndim == free.ndim == targets.ndim - 1 == 1:
+        return ()  # one pose, the common case
+    batches = [theta.shape[:-1], targets.shape[:-2], free.shape[:-1]]
+    if max_step is not None:
+        batches.append(max_step.shape)
+    if max_error is not None:
+        batches.append(max_error.shape[:-1])
+    return together("theta, targets, mobility, max_step and max_error", *batches)
