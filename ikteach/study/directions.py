@@ -7,7 +7,7 @@ import pandas as pd
 
 from ikteach.arrays import ArrayLike
 from ikteach.body import Effectors, Tree, forward, jacobian, locate
-from ikteach.motion.step import checked
+from ikteach.motion.checks import checked
 from ikteach.solvers import sdls
 from ikteach.solvers.response import directions, factors
 

@@ -8,7 +8,7 @@ import pandas as pd
 
 from ikteach.arrays import ArrayLike
 from ikteach.checks import count, numbers
-from ikteach.motion.reach.packages import Body, backs_reach
+from ikteach.motion.reach.packages import ReachingFigure, backs_reach
 from ikteach.motion.reach.reaching import Reaching, trial
 from ikteach.motion.reach.ways import WAYS, Way, Ways, advance
 
@@ -49,7 +49,7 @@ def reaches(cursors: ArrayLike, ways: Mapping[str, Way] = WAYS, **options: Any) 
     unsettled      share that still moves at the end and does not repeat itself
     options        go to `motion.reach.trial`
     """
-    body, rows = Body(), {}
+    body, rows = ReachingFigure(), {}
     for name, way in Ways.of(ways).items():
         run = trial(body, cursors, way, **options)
         ticks = run.ticks[run.arrived]
@@ -76,7 +76,7 @@ def follow(cursors: ArrayLike, way: Way, ticks: int | None = None, **options: An
     largest step [°]   of a joint, the neck's left out
     options            go to `motion.ways.advance`
     """
-    body, places = Body(), numbers("the cursors", cursors)
+    body, places = ReachingFigure(), numbers("the cursors", cursors)
     if ticks is not None:
         if places.shape != (3,):
             raise ValueError(f"for some ticks a cursor is x, y and z, not of shape {places.shape}")
