@@ -16,7 +16,7 @@ LOOPS = (
     "for task in __import__('asyncio').all_tasks(bench._act.loop) if not task.done())"
 )
 
-IN_WORDS = "__import__('ikteach.motion.live.session', fromlist=['x']).in_words"
+IN_WORDS = "__import__('ikteach.motion.live.settings', fromlist=['x']).in_words"
 
 
 @pytest.fixture(scope="module")
