@@ -15,7 +15,7 @@ from ikteach.motion.gait import Gait
 from ikteach.motion.live.history import History
 from ikteach.motion.live.log import Event, Log, Moment
 from ikteach.motion.live.settings import (
-    OWN,
+    SESSION,
     Settings,
     check_options,
     figure_of,
@@ -56,7 +56,7 @@ class Play:
         self.dt = number("dt", dt)
         if not self.dt:
             raise ValueError(f"dt must be more than 0, not {shown(dt)}")
-        check_options(options, OWN)
+        check_options(options, SESSION)
         try_options(self.tree, self.effectors, options)
         self.history = History(count("keep", keep), count("keep_events", keep_events))
         usual = usual_methods(self.tree, self.effectors)

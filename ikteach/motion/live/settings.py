@@ -28,7 +28,15 @@ OPTIONS = [
     for name, parameter in inspect.signature(step).parameters.items()
     if parameter.kind is parameter.KEYWORD_ONLY and name not in ("mobility", "frames")
 ]
-OWN = ("figure", "gait", "methods", "method", "dt", "keep", "keep_events")  # options of a session
+SESSION = (
+    "figure",
+    "gait",
+    "methods",
+    "method",
+    "dt",
+    "keep",
+    "keep_events",
+)  # options of a session
 
 
 @dataclass(frozen=True, eq=False)
