@@ -79,6 +79,39 @@ def still(bench: Notebook) -> None:
         bench.settle("bench._task.done()", True)
 
 
+def test_to_open_it_and_all_its_panels_logs_nothing(bench: Notebook) -> None:
+    """Also where a slider's value is between two of its steps, as γ_max = π/4 is."""
+    bench.frames(5)
+    for title in ("Options of the methods", "Around the solver", "Speed", "Target position"):
+        open_panel(bench, "Method" if "the" in title else title)
+        open_panel(bench, title)
+    frames_settled(bench)
+    bench.shot("09_panels")
+    assert bench.kernel("[str(event) for event in bench.session.events]") == []
+    open_panel(bench, "Method")
+
+
+def test_a_held_key_is_one_move_and_one_undo(bench: Notebook) -> None:
+    still(bench)
+    targets = "bench.session.targets.round(6).tolist()"
+    before = bench.kernel(targets)
+    bench.page.locator(".ikteach-stage").first.focus()
+    bench.page.keyboard.press("Tab")
+    for _ in range(8):  # the later ones are repeats
+        bench.page.keyboard.down("ArrowUp")
+        time.sleep(0.1)
+    bench.page.keyboard.up("ArrowUp")
+    bench.settle(f"{targets}[0][1] > {before[0][1]} + 0.1", True)
+    frames_settled(bench)
+    kinds = "[event.kind for event in bench.session.events if event.kind != 'pause']"
+    assert bench.kernel(kinds) == ["target"]
+    bench.page.keyboard.press("Escape")
+    bench.settle(targets, before)
+    bench.settle("bench.session.by_hand", False)
+    bench.press("Play")
+    bench.settle("bench.playing", True)
+
+
 def test_method(bench: Notebook) -> None:
     bench.frames(10)
     open_panel(bench, "Method")
