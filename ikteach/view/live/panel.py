@@ -103,6 +103,8 @@ class Panel:
             if self._quiet:
                 return
             old, new = change["old"], change["new"]
+            if isinstance(new, float) and abs(new - old) < 1e-9:  # the page's last bits
+                return
             if name in self._put and self._put[name] == old and _rounded(control, old, new):
                 return
             self._put.pop(name, None)

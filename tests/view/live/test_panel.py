@@ -74,6 +74,15 @@ def test_what_the_page_rounds_is_no_change(control, rounded, heard):
     assert [value for (value,) in heard][1:] == [rounded]
 
 
+def test_the_last_bits_of_the_page_are_no_change(heard):
+    control = slider("y", -0.4, -1.3, -0.4, 0.01)
+    panel = panel_of(control, heard)
+    control.value = -0.88
+    control.value = -0.8799999999999999
+    assert heard == [(-0.88,)]
+    assert panel.values == {"one": control.value}
+
+
 def test_the_range_grows_where_it_must(heard):
     assert slider("a", 5.0, 0.0, 1.0, 0.1).max == 5
     assert slider("a", -5.0, 0.0, 1.0, 0.1).min == -5
