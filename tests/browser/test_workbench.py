@@ -16,7 +16,7 @@ LOOPS = (
     "for task in __import__('asyncio').all_tasks(bench._act.loop) if not task.done())"
 )
 
-IN_WORDS = "__import__('ikteach.motion.live.session', fromlist=['x']).in_words"
+IN_WORDS = "__import__('ikteach.motion.live.settings', fromlist=['x']).in_words"
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +55,7 @@ def changed(before: np.ndarray, after: np.ndarray) -> float:
 
 
 def control(name: str) -> str:
-    return f"bench._control({name!r})"
+    return f"next(p.controls[{name!r}] for p in bench.panels.values() if {name!r} in p.controls)"
 
 
 def slide(bench: Notebook, label: str, key: str = "End") -> None:
@@ -77,6 +77,39 @@ def still(bench: Notebook) -> None:
     if bench.kernel("bench.playing"):
         bench.press("Pause")
         bench.settle("bench._task.done()", True)
+
+
+def test_to_open_it_and_all_its_panels_logs_nothing(bench: Notebook) -> None:
+    """Also where a slider's value is between two of its steps, as γ_max = π/4 is."""
+    bench.frames(5)
+    for title in ("Options of the methods", "Around the solver", "Speed", "Target position"):
+        open_panel(bench, "Method" if "the" in title else title)
+        open_panel(bench, title)
+    frames_settled(bench)
+    bench.shot("09_panels")
+    assert bench.kernel("[str(event) for event in bench.session.events]") == []
+    open_panel(bench, "Method")
+
+
+def test_a_held_key_is_one_move_and_one_undo(bench: Notebook) -> None:
+    still(bench)
+    targets = "bench.session.targets.round(6).tolist()"
+    before = bench.kernel(targets)
+    bench.page.locator(".ikteach-stage").first.focus()
+    bench.page.keyboard.press("Tab")
+    for _ in range(8):  # the later ones are repeats
+        bench.page.keyboard.down("ArrowUp")
+        time.sleep(0.1)
+    bench.page.keyboard.up("ArrowUp")
+    bench.settle(f"{targets}[0][1] > {before[0][1]} + 0.1", True)
+    frames_settled(bench)
+    kinds = "[event.kind for event in bench.session.events if event.kind != 'pause']"
+    assert bench.kernel(kinds) == ["target"]
+    bench.page.keyboard.press("Escape")
+    bench.settle(targets, before)
+    bench.settle("bench.session.by_hand", False)
+    bench.press("Play")
+    bench.settle("bench.playing", True)
 
 
 def test_method(bench: Notebook) -> None:
@@ -148,12 +181,12 @@ def test_motion_and_motion_control(bench: Notebook) -> None:
     bench.settle("bench.session.gait.wound.get('elbow.l')", 0.0)
     before = picture(bench, "drawn_before")
     slide(bench, "drawn + [°]", "End")
-    bench.settle("float(bench._plus.max().round(4))", 1.0472)
+    bench.settle("float(bench.wounds.plus.max().round(4))", 1.0472)
     slide(bench, "drawn ×", "Home")
-    bench.settle("float(bench._times.min())", 0.0)
+    bench.settle("float(bench.wounds.times.min())", 0.0)
     assert changed(before, picture(bench, "drawn_after")) > 0.005
     bench.press("Heal all")
-    bench.settle("[bench.session.gait.wound, float(bench._plus.max())]", [{}, 0.0])
+    bench.settle("[bench.session.gait.wound, float(bench.wounds.plus.max())]", [{}, 0.0])
 
 
 def test_view(bench: Notebook) -> None:
@@ -169,7 +202,7 @@ def test_view(bench: Notebook) -> None:
     bench.press("perspective")
     choose(bench, "View", "three-quarter")
     choose(bench, "J and ellipsoid of", "hand.l")
-    bench.settle("bench._chosen", 3)
+    bench.settle("bench.view.values['effector']", "hand.l")
     assert changed(before, parallel) > 0.03
     layers = bench.kernel("[name for name in bench.scene.layers]")
     for layer in [*layers, "targets"]:
@@ -293,7 +326,7 @@ def test_figures_of_all_methods(bench: Notebook) -> None:
     open_panel(bench, "View")
     for figures in ("all methods, overlaid", "all methods, side by side", "one figure"):
         choose(bench, "Figures", figures)
-        bench.settle("bench._figures", figures)
+        bench.settle("bench.figures", figures)
         bench.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
         bench.settle("bench.scene.driver.seen", True)
         frames_settled(bench)

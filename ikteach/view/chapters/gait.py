@@ -1,20 +1,27 @@
 """The walking human of chapter 7: scene, controls, curves and table, alive."""
 
-from dataclasses import replace
 from typing import Any
 
 import ipywidgets as widgets
 
 from ikteach.markup import Markup
-from ikteach.motion.gait import MOTIONS, WOUND, Gait
+from ikteach.motion.gait import WOUND, Gait
 from ikteach.motion.live.session import Session
+from ikteach.motion.live.settings import SESSION, check_options
 from ikteach.motion.methods import Methods
-from ikteach.motion.path import Path
 from ikteach.study import distances
-from ikteach.view.live.controls import Controls
 from ikteach.view.live.live import Live
+from ikteach.view.live.panel import Does, Panel, button, choice, dropdown, play_button, tick_box
 from ikteach.view.live.strips import SECONDS, Strips
 from ikteach.view.stage.lengths import Lengths
+from ikteach.view.stage.stage import sides_of
+from ikteach.view.tools.session_panels import (
+    SLIDERS,
+    gait_rows,
+    gait_values,
+    motions,
+    other_motion,
+)
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import prose
 from ikteach.view.widgets.prose import Prose
@@ -34,24 +41,68 @@ class GaitPlayer(Live):
     def __init__(
         self, methods: Methods | None = None, *, slot: str | None = "gait", **options: Any
     ) -> None:
+        check_options(options, [*SESSION, "slot"])
         session = Session(methods=methods, **options)
         scene = Scene(session.tree, session.effectors, slot=None)
         super().__init__(session, scene, slot, Strips(session))
         self._table = Prose()
         self._first = session.gait
-        self.controls = Controls(list(session.methods), session)
-        self.controls.on_change(self.guarded(self._obey))
+        self.panel = self._make_panel()
+        self.controls = self.panel.controls
         self.children = [
-            widgets.HBox([self.scene.widget, self.controls.widget]),
+            widgets.HBox([self.scene.widget, self.panel.widget]),
             self.status,
             self.strips,
             self._table,
         ]
         self.report()
 
+    def _make_panel(self) -> Panel:
+        session, scene = self.session, self.scene
+        look: dict[str, Any] = {"label_width": "60px"}
+        walks, able = isinstance(session.gait, Gait), set(WOUND) <= set(session.tree.names)
+        wounded = Does(tick_box("wounded", bool(session.gait.wound)), self._wound)
+        forward = Does(
+            tick_box("moving forward", session.gait.forward),
+            lambda on: session.change(forward=on),
+        )
+        checks = {"wounded": wounded} if able else {}
+        checks |= {"forward": forward} if walks else {}
+        method = choice("Method", list(session.methods), session.method, **look)
+        motion = choice("Motion", motions(session), session.gait.name, **look)
+        sides = dropdown("View", sides_of(session.tree, session.effectors), **look)
+        groups = SLIDERS if walks else ["Speed"]
+        return Panel(
+            "Gait",
+            [
+                {
+                    "playing": Does(play_button(), lambda on: self.play() if on else self.pause()),
+                    "step": Does(button("Step"), self.step),
+                    "reset": Does(button("Reset"), session.reset),
+                },
+                {"method": Does(method, session.show)},
+                {"motion": Does(motion, self._move)},
+                *([checks] if checks else []),
+                {"view": Does(sides, scene.look_from)},
+            ],
+            folded={group: gait_rows(session, group, width="auto") for group in groups},
+            opened=0,
+            shows=lambda: gait_values(session, *groups),
+            guard=self.guarded,
+            width="440px",
+            flex="0 1 auto",
+        )
+
+    def _move(self, name: str) -> None:
+        self.session.gait = other_motion(self.session, name, self._first)
+        self.panel.agree()
+
+    def _wound(self, on: bool) -> None:
+        self.session.change(wound=WOUND if on else {})
+
     def say_playing(self, on: bool) -> None:
         """Have the button say whether it plays."""
-        self.controls.say_playing(on)
+        self.panel.put(playing=on)
 
     @property
     def words(self) -> str:
@@ -75,34 +126,6 @@ class GaitPlayer(Live):
         session = self.session
         self.scene.driver.description = self.words
         self._table.value = table(session, session.method)
-
-    def _obey(self, name: str, value: Any) -> None:
-        session = self.session
-        if name == "method":
-            session.show(value)
-        elif name == "motion":
-            session.gait = other_motion(session, value, self._first)
-            self.controls.agree(session.gait)
-        elif name == "wounded":
-            session.change(wound=WOUND if value else {})
-        elif name == "view":
-            self.scene.look_from(value)
-        elif name == "playing":
-            self.playing = value
-        elif name == "reset":
-            session.reset()
-        elif name == "step":
-            self.step()
-        else:
-            session.change(**{name: value})
-
-
-def other_motion(session: Session, name: str, start: Gait | Path) -> Gait | Path:
-    """The motion of that name, or the one that it began with, with what is set about the figure."""
-    gait: Gait | Path = MOTIONS[name] if name in MOTIONS and name != start.name else start
-    if isinstance(gait, Gait):
-        return replace(gait, forward=session.gait.forward, wound=session.gait.wound)
-    return replace(gait, wound=session.gait.wound)
 
 
 def words(session: Session) -> str:

@@ -42,7 +42,7 @@ class CapPlayer(Living, widgets.VBox):  # type: ignore[misc]
         x_hand = doors.within("x_hand", x_hand, *SIDE)
         start = replace(gait.walking, x_hand=x_hand)
         self.player = GaitPlayer(rules(degrees), slot=None, gait=start, method="whole step")
-        self.player.controls.method.description = "Cap"
+        self.player.controls["method"].description = "Cap"
         self.controls = {
             "cap": slider("cap [° a step]", degrees, *CAP, 0.5),
             "x_hand": slider("hands to the side [m]", x_hand, *SIDE, 0.05),
@@ -64,8 +64,8 @@ class CapPlayer(Living, widgets.VBox):  # type: ignore[misc]
         self.player.report()
 
     def _obey(self, name: str, value: float) -> None:
-        if name == "cap":  # the same names as before: a tick under way may go on
-            self.player.session.methods.update(rules(value))
+        if name == "cap":
+            self.player.session.use(rules(value))
         else:
             self.player.session.change(x_hand=value)
 
