@@ -1,0 +1,190 @@
+"""Panels: named controls that carry what they do, and the one factory for each kind of control."""
+
+from collections.abc import Callable, Mapping, Sequence
+from math import log10
+from typing import Any, NamedTuple
+
+import ipywidgets as widgets
+
+Act = Callable[..., object]
+Row = Any  # {name: control or Does}, or a widget
+
+
+class Does(NamedTuple):
+    """A control and its action: `act(value)` for a new value, `act()` for the click of a button."""
+
+    control: Any
+    act: Act | None  # None: it is only read
+
+
+class Panel:
+    """Controls under a title, which act when a person changes them, and not when a program does.
+
+    rows      from top to bottom: {name: control or Does(control, act)}, whose controls stand side
+              by side, or any widget
+    folded    {title: rows} of an accordion under them
+    opened    the place of the part of it that is open, None if none is
+    guard     wraps each action; of a live figure `Live.guarded`, which reports errors
+    layout    of the whole
+
+    controls  {name: widget}
+    widget    all of it, to be shown
+    """
+
+    def __init__(
+        self,
+        title: str,
+        rows: Sequence[Row],
+        *,
+        folded: Mapping[str, Sequence[Row]] | None = None,
+        opened: int | None = None,
+        guard: Callable[[Act], Act] = lambda act: act,
+        **layout: Any,
+    ) -> None:
+        self.title, self._guard = title, guard
+        self.controls: dict[str, Any] = {}
+        self._put: dict[str, Any] = {}  # values from the program, which a page may have rounded
+        self._quiet = False
+        boxes = [self._box(row) for row in rows]
+        if folded:
+            parts = [widgets.VBox([self._box(row) for row in part]) for part in folded.values()]
+            boxes.append(widgets.Accordion(parts, titles=list(folded), selected_index=opened))
+        self.widget = widgets.VBox(boxes, layout=layout)
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """The value of each control that has one, before any rounding in the page."""
+        return {
+            name: self._put.get(name, control.value)
+            for name, control in self.controls.items()
+            if not isinstance(control, widgets.Button)
+        }
+
+    def put(self, **values: Any) -> None:
+        """Set controls without acting; the range of a slider grows where it must."""
+        self._quiet = True
+        try:
+            for name, value in values.items():
+                control = self.controls[name]
+                if isinstance(control, widgets.FloatSlider | widgets.IntSlider):
+                    control.min, control.max = min(control.min, value), max(control.max, value)
+                control.value = self._put[name] = value
+        finally:
+            self._quiet = False
+
+    def disable(self) -> None:
+        """Let no person change anything more."""
+        for control in self.controls.values():
+            control.disabled = True
+
+    def _box(self, row: Row) -> widgets.Widget:
+        if not isinstance(row, Mapping):
+            return row
+        for name, one in row.items():
+            control, act = one if isinstance(one, Does) else Does(one, None)
+            self.controls[name] = control
+            self._listen(name, control, _idle if act is None else self._guard(act))
+        made = [self.controls[name] for name in row]
+        return made[0] if len(made) == 1 else widgets.HBox(made, layout={"flex_flow": "row wrap"})
+
+    def _listen(self, name: str, control: Any, act: Act) -> None:
+        if isinstance(control, widgets.Button):
+            control.on_click(lambda _: act())
+            return
+        self._put[name] = control.value
+
+        def changed(change: Any) -> None:
+            if self._quiet:
+                return
+            old, new = change["old"], change["new"]
+            if name in self._put and self._put[name] == old and _rounded(control, old, new):
+                return
+            self._put.pop(name, None)
+            act(new)
+
+        control.observe(changed, "value")
+
+
+def _idle(_: Any) -> None:
+    """Do nothing: the control is only read."""
+
+
+def _rounded(control: Any, old: Any, new: Any) -> bool:
+    """Whether the page only brought a slider from `old` to the nearest of its steps.
+
+    A page does so as soon as it shows a slider whose value is between two steps.
+    """
+    if not isinstance(control, widgets.FloatSlider | widgets.FloatLogSlider):
+        return False
+    if isinstance(control, widgets.FloatLogSlider):  # its steps are those of the exponent
+        old, new = log10(old) / log10(control.base), log10(new) / log10(control.base)
+    steps = round((old - control.min) / control.step)
+    nearest = min(control.min + steps * control.step, control.max)
+    return abs(new - nearest) < 1e-6 * control.step
+
+
+def slider(label: str, value: float, low: float, high: float, step: float, **look: Any) -> Any:
+    """Make a slider from low to high, or to its value if that is beyond them.
+
+    step  whole numbers only, if it is an int
+    look  `width` of the slider with its label, `label_width`, and traits of the slider
+    """
+    kind = widgets.IntSlider if isinstance(step, int) else widgets.FloatSlider
+    low, high = min(low, value), max(high, value)
+    return kind(value=value, min=low, max=high, step=step, **_look(label, **look))
+
+
+def log_slider(
+    label: str, value: float, low: float, high: float, step: float = 0.05, **look: Any
+) -> Any:
+    """Make a slider from 10^low to 10^high, in steps of the exponent."""
+    look = {"readout_format": ".3g"} | look
+    return widgets.FloatLogSlider(value=value, min=low, max=high, step=step, **_look(label, **look))
+
+
+def choice(
+    label: str, options: Sequence[str], value: str | None = None, *, label_width: str = "190px"
+) -> Any:
+    """Make buttons of which one is pressed, the first if no value is given."""
+    style = {"description_width": label_width, "button_width": "auto"}
+    value = options[0] if value is None else value
+    return widgets.ToggleButtons(options=options, value=value, description=label, style=style)
+
+
+def dropdown(
+    label: str, options: Sequence[str], value: str | None = None, *, label_width: str = "190px"
+) -> Any:
+    """Make a list of which one is chosen, the first if no value is given."""
+    style = {"description_width": label_width}
+    value = options[0] if value is None else value
+    return widgets.Dropdown(options=options, value=value, description=label, style=style)
+
+
+def tick_box(label: str, value: bool = False, **layout: Any) -> Any:
+    """Make a box to tick."""
+    return widgets.Checkbox(value=value, description=label, indent=False, layout=layout)
+
+
+def button(label: str) -> Any:
+    """Make a button as wide as its label."""
+    return widgets.Button(description=label, layout={"width": "auto"})
+
+
+def play_button() -> Any:
+    """Make a button that is pressed while the figure plays, and says what a click does."""
+    made = widgets.ToggleButton(value=True, description="Pause", layout={"width": "80px"})
+
+    def name(change: Any) -> None:
+        made.description = "Pause" if change["new"] else "Play"
+
+    made.observe(name, "value")
+    return made
+
+
+def _look(
+    label: str, width: str = "560px", label_width: str = "190px", **traits: Any
+) -> dict[str, Any]:
+    """Give the traits of a slider of this label: as wide as that, or as the page has room."""
+    style = {"description_width": label_width}
+    layout = {"width": width, "max_width": "100%"}
+    return {"description": label, "style": style, "layout": layout, **traits}
