@@ -70,7 +70,7 @@ def test_motions(gait: Notebook) -> None:
     gait.press("running")
     gait.settle("player.session.gait.name", "running")
     gait.page.wait_for_selector(f"{DRIVER}[aria-label*='running']", timeout=READY)
-    assert gait.kernel("player.controls.sliders['back_y_leg'].value") == -1.1
+    assert gait.kernel("player.controls['back_y_leg'].value") == -1.1
     gait.frames(20)
     gait.shot("07_running")
     gait.press("walking")
@@ -119,7 +119,7 @@ def test_sliders_by_keyboard_to_both_ends(
         title.click()
     value = f"player.session.gait.{parameter}"
     was = gait.kernel(value)
-    control = f"player.controls.sliders['{parameter}']"
+    control = f"player.controls['{parameter}']"
     ends = gait.kernel(f"[{control}.min, {control}.max]")
     for key, end in zip(("Home", "End"), ends, strict=True):
         slider.focus()

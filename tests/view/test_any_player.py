@@ -17,9 +17,9 @@ from ikteach.motion.live.session import Session
 from ikteach.motion.path import Path
 from ikteach.view import Poser, Scene, StillScene
 from ikteach.view.chapters.comparison import EQUAL, OWN, Race
-from ikteach.view.chapters.figure import Dial
 from ikteach.view.chapters.gait import GaitPlayer
 from ikteach.view.chapters.jacobian import ColumnPoser
+from ikteach.view.live.joints import Dial
 from ikteach.view.stage.lengths import Lengths, digits_of, round_step
 from ikteach.view.tools.replay import Replay
 from ikteach.view.webgl.targets import Targets
@@ -114,10 +114,10 @@ def test_who_cannot_walk_is_told_so(make):
 def test_a_player_of_a_path_and_back(make):
     path = Path(lambda phase: [[2 + np.cos(phase) / 2, np.sin(phase) / 2, 0]], "circle", speed=30.0)
     player = make(GaitPlayer, figure=figures.planar_arm(3), gait=path)
-    assert player.controls.motion.options == ("circle",)
-    assert set(player.controls.sliders) == {"speed", "step_frequency", "slowdown"}
-    assert player.controls.sliders["speed"].value == 30.0
-    player.controls.sliders["speed"].value = 4.0
+    assert player.controls["motion"].options == ("circle",)
+    assert not {"wounded", "forward", "back_z_leg"} & set(player.controls)
+    assert player.controls["speed"].value == 30.0
+    player.controls["speed"].value = 4.0
     assert player.session.gait.speed == 4.0
     race = make(Race, figure=figures.planar_arm(3), gait=path)
     race.controls["speed"].value = 3.0
@@ -127,10 +127,10 @@ def test_a_player_of_a_path_and_back(make):
 def test_a_gait_of_ones_own_name_and_size_is_among_the_motions(make):
     own = replace(walking, name="limping", hand_z=2.5)
     player = make(GaitPlayer, gait=own)
-    assert player.controls.sliders["hand_z"].value == 2.5
-    player.controls.motion.value = "running"
+    assert player.controls["hand_z"].value == 2.5
+    player.controls["motion"].value = "running"
     assert player.session.gait.name == "running"
-    player.controls.motion.value = "limping"
+    player.controls["motion"].value = "limping"
     assert player.session.gait == own
 
 

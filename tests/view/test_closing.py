@@ -25,7 +25,8 @@ from ikteach.view.chapters.dls import tradeoff_bench
 from ikteach.view.chapters.pseudoinverse import CapPlayer
 from ikteach.view.chapters.sdls import spectrum_bench
 from ikteach.view.chapters.transpose import slope_bench
-from ikteach.view.live.bench import Bench, Shown, slider
+from ikteach.view.live.bench import Bench, Shown
+from ikteach.view.live.panel import slider
 from ikteach.view.live.strips import Strips
 from ikteach.view.tools.files import Keeper
 from ikteach.view.tools.inspector import Glass
@@ -36,10 +37,11 @@ from ikteach.view.webgl.handles import Handles
 from ikteach.view.webgl.targets import Targets
 from ikteach.view.widgets.ball import Ball
 from ikteach.view.widgets.closing import Living, living, occupant
+from ikteach.view.widgets.curve import Curve
 from ikteach.view.widgets.picture import Picture
-from ikteach.view.widgets.pointing import Curve, Rows
 from ikteach.view.widgets.prose import Prose
 from ikteach.view.widgets.status import Status
+from ikteach.view.widgets.table import Rows
 
 NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
 

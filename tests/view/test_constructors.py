@@ -15,7 +15,8 @@ from ikteach.motion.live.session import Session
 from ikteach.motion.reach.planar import PlanarReach
 from ikteach.view import BendBench, ColumnPoser, Poser, Scene, Simulator, StillScene, Workbench
 from ikteach.view.chapters.pseudoinverse import CapPlayer
-from ikteach.view.live.bench import Bench, Shown, slider
+from ikteach.view.live.bench import Bench, Shown
+from ikteach.view.live.panel import slider
 from ikteach.view.tools.files import Keeper
 from ikteach.view.tools.inspector import Glass
 from ikteach.view.tools.recorder import Recorder

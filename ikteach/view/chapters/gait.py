@@ -11,10 +11,12 @@ from ikteach.motion.live.session import Session
 from ikteach.motion.methods import Methods
 from ikteach.motion.path import Path
 from ikteach.study import distances
-from ikteach.view.live.controls import Controls
+from ikteach.view.live.controls import SLIDERS, motions
 from ikteach.view.live.live import Live
+from ikteach.view.live.panel import Does, Panel, button, choice, dropdown, slider, tick_box
 from ikteach.view.live.strips import SECONDS, Strips
 from ikteach.view.stage.lengths import Lengths
+from ikteach.view.stage.stage import sides_of
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import prose
 from ikteach.view.widgets.prose import Prose
@@ -39,23 +41,19 @@ class GaitPlayer(Live):
         super().__init__(session, scene, slot, Strips(session))
         self._table = Prose()
         self._first = session.gait
-        self.controls = Controls(list(session.methods), session)
-        self.controls.on_change(self.guarded(self._obey))
+        self.panel = self._panel()
+        self.controls = self.panel.controls
         self.children = [
-            widgets.HBox([self.scene.widget, self.controls.widget]),
+            widgets.HBox([self.scene.widget, self.panel.widget]),
             self.status,
             self.strips,
             self._table,
         ]
         self.report()
 
-    def say_playing(self, on: bool) -> None:
-        """Have the button say whether it plays."""
-        self.controls.say_playing(on)
-
     @property
     def words(self) -> str:
-        """What the picture shows, for those who cannot see it."""
+        """Say what the picture shows, for those who cannot see it."""
         return words(self.session)
 
     def draw(self) -> None:
@@ -76,29 +74,61 @@ class GaitPlayer(Live):
         self.scene.driver.description = self.words
         self._table.value = table(session, session.method)
 
-    def _obey(self, name: str, value: Any) -> None:
+    def _panel(self) -> Panel:
+        session, gait = self.session, self.session.gait
+        walks, able = isinstance(gait, Gait), set(WOUND) <= set(session.tree.names)
+        methods = choice("Method", list(session.methods), session.method, label_width="60px")
+        motion = choice("Motion", motions(session), gait.name, label_width="60px")
+        sides = dropdown("View", sides_of(session.tree, session.effectors), label_width="60px")
+        boxes = {}
+        if able:
+            boxes["wounded"] = Does(tick_box("wounded", bool(gait.wound)), self._wound)
+        if walks:
+            ahead = tick_box("moving forward", gait.forward)
+            boxes["forward"] = Does(ahead, lambda on: session.change(forward=on))
+        clock = {
+            "playing": self.play_button,
+            "step": Does(button("Step"), self.step),
+            "reset": Does(button("Reset"), session.reset),
+        }
+        return Panel(
+            "Gait",
+            [
+                clock,
+                {"method": Does(methods, session.show)},
+                {"motion": Does(motion, self._move)},
+                *([boxes] if boxes else []),
+                {"view": Does(sides, self.scene.look_from)},
+            ],
+            folded={
+                group: [{name: self._slider(name, *spec)} for name, spec in sliders.items()]
+                for group, sliders in SLIDERS.items()
+                if walks or group == "Speed"
+            },
+            opened=0,
+            guard=self.guarded,
+            width="440px",
+            flex="0 1 auto",
+        )
+
+    def _slider(self, name: str, label: str, low: float, high: float, step: float) -> Does:
+        """Make the slider of a parameter of the gait."""
+        value = getattr(self.session.gait, name)
+        made = slider(label, value, low, high, step, width="auto", label_width="140px")
+        return Does(made, lambda value: self.session.change(**{name: value}))
+
+    def _wound(self, on: bool) -> None:
+        self.session.change(wound=WOUND if on else {})
+
+    def _move(self, motion: str) -> None:
         session = self.session
-        if name == "method":
-            session.show(value)
-        elif name == "motion":
-            session.gait = other_motion(session, value, self._first)
-            self.controls.agree(session.gait)
-        elif name == "wounded":
-            session.change(wound=WOUND if value else {})
-        elif name == "view":
-            self.scene.look_from(value)
-        elif name == "playing":
-            self.playing = value
-        elif name == "reset":
-            session.reset()
-        elif name == "step":
-            self.step()
-        else:
-            session.change(**{name: value})
+        session.gait = other_motion(session, motion, self._first)
+        parameters = vars(session.gait).keys() & self.controls.keys() - {"forward"}
+        self.panel.put(**{name: getattr(session.gait, name) for name in parameters})
 
 
 def other_motion(session: Session, name: str, start: Gait | Path) -> Gait | Path:
-    """The motion of that name, or the one that it began with, with what is set about the figure."""
+    """Give the motion of that name, or `start`, with the present wound and way."""
     gait: Gait | Path = MOTIONS[name] if name in MOTIONS and name != start.name else start
     if isinstance(gait, Gait):
         return replace(gait, forward=session.gait.forward, wound=session.gait.wound)
@@ -106,7 +136,7 @@ def other_motion(session: Session, name: str, start: Gait | Path) -> Gait | Path
 
 
 def words(session: Session) -> str:
-    """The shown figure in words: what it does, by which method, and how well."""
+    """Say what the shown figure does, by which method, and how well."""
     length = Lengths.of(session.tree, session.effectors)
     far = ", ".join(
         f"{name} {length(d)}"
@@ -119,7 +149,7 @@ def words(session: Session) -> str:
 
 
 def table(session: Session, shown: str | None = None) -> Markup:
-    """The last seconds of each method as a table; the one that is `shown` says so."""
+    """Write the last seconds of each method as a table; the `shown` one says so."""
     tracks = session.tracks(last=round(SECONDS / session.dt))
     if not tracks:
         return Markup("<p>No tick yet: the table fills when the figure moves.</p>")
