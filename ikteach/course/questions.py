@@ -30,7 +30,7 @@ def predict(
     ranking: bool = False,
     explain: str | None = None,
 ) -> "Question":
-    """A question to answer before the code runs; make it the last line of its cell.
+    """Ask before the code runs; make it the last line of its cell.
 
     key      chapter and name, such as "03.half-alpha"
     options  what there is to choose from, or to put in order if `ranking`
@@ -71,7 +71,7 @@ NO_ANSWER = "That is no answer to this question."
 
 
 def _choices(key: str, options: Sequence[str]) -> list[str]:
-    """The options as a list; TypeError or ValueError says what they are not."""
+    """Check the options, as a list; TypeError or ValueError says what is wrong."""
     from ikteach.view.widgets import doors
 
     choices = doors.words(f"the options of {key!r}", options)
@@ -84,7 +84,7 @@ def _choices(key: str, options: Sequence[str]) -> list[str]:
 
 
 def _range(key: str, numbers: Any) -> tuple[float, float, str]:
-    """Low, high and unit; TypeError or ValueError says what they are not."""
+    """Check low, high and unit; TypeError or ValueError says what is wrong."""
     from ikteach.view.widgets import doors
 
     if not (isinstance(numbers, tuple | list) and len(numbers) == 3):
@@ -171,9 +171,8 @@ def reveal(key: str, answer: Any, because: str | None = None) -> Revealed:
     known = record.entry("predictions", key)
     trouble = record.store("predictions", key, result=result)
     _lock(key)
-    return Revealed(
-        known.get("answer"), result, because or "", bool(known.get("late")), trouble
-    )  # fmt: skip
+    late = bool(known.get("late"))
+    return Revealed(known.get("answer"), result, because or "", late, trouble)
 
 
 def _lock(key: str) -> None:
@@ -189,7 +188,7 @@ def _lock(key: str) -> None:
 def quiz(
     key: str, question: str, options: Sequence[str], right: str, why: str | Mapping[str, str]
 ) -> "Question":
-    """An exit question; make it the last line of its cell.
+    """Ask an exit question; make it the last line of its cell.
 
     right  the right one of the options
     why    {option: a sentence} for the options, said when one is chosen; or one sentence for all
@@ -216,13 +215,12 @@ def quiz(
         verdict = "✓ Right." if good else "✗ Not so."
         return f"{verdict} {reasons.get(answer, '')} {trouble}".strip()
 
-    return Question(
-        f"quiz {key}", judge, question=question, options=list(options), button="Check"
-    )  # fmt: skip
+    asked = {"question": question, "options": list(options), "button": "Check"}
+    return Question(f"quiz {key}", judge, **asked)
 
 
 def words(value: Any) -> str:
-    """An answer as a person writes it."""
+    """Write an answer as a person does."""
     if isinstance(value, list):
         return bounded(", then ".join(map(words, value)), 1000)
     return f"{value:.4g}" if isinstance(value, float) else bounded(str(value), 1000)

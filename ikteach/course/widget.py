@@ -59,7 +59,7 @@ class Question(Living, anywidget.AnyWidget):
         return shown if isinstance(shown, cls) else None
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
-        """The widget, and beside it the question to read in places without a kernel."""
+        """Show the widget, and beside it the question for a place without a kernel."""
         bundle = super()._repr_mimebundle_(**kwargs)
         data, metadata = bundle if isinstance(bundle, tuple) else (bundle, {})
         still = {"text/html": str(self._still()), "text/plain": self.question}

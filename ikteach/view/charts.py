@@ -176,7 +176,7 @@ def draw_heat(axes: Axes, values: Array, rows: Sequence[Any], columns: Sequence[
 
 
 def _numbers(table: Any) -> Array:
-    """The numbers of a table; TypeError or ValueError says what it is instead."""
+    """Check the numbers of a table; TypeError or ValueError says what is wrong."""
     if not isinstance(table, pd.DataFrame):
         raise TypeError(f"a chart needs a pandas DataFrame, not {shown(table)}")
     if table.empty:

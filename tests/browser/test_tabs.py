@@ -87,7 +87,7 @@ def run_again(page: Notebook) -> None:
     """Run the cell, and see that there is a new figure, which moves, and one loop."""
     old = page.kernel("bench.scene.driver.model_id")
     page.run_cell("bench = Workbench()")
-    page.settle(f"bench.scene.driver.model_id != {old!r} and bench.scene.driver.greeted", True)
+    page.settle(f"bench.scene.driver.model_id != {old!r} and bench.scene.driver.seen", True)
     page.frames(5)
     assert page.kernel(LOOPS) == 1
 

@@ -291,7 +291,7 @@ def test_figures_of_all_methods(bench: Notebook) -> None:
         choose(bench, "Figures", figures)
         bench.settle("bench._figures", figures)
         bench.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
-        bench.settle("bench.scene.driver.greeted", True)
+        bench.settle("bench.scene.driver.seen", True)
         frames_settled(bench)
         bench.shot(f"09_{figures.split(',')[-1].strip().replace(' ', '_')}", ".ikteach-scene")
     assert bench.kernel("bench.status.wrong") == ""

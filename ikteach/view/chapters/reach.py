@@ -53,7 +53,7 @@ class CursorScene(Scene):
 
 
 def _cursor(session: Reaching) -> Effectors:
-    """The hand that reaches, under the name that its target is to have."""
+    """Give the hand that reaches the name of its target."""
     return replace(session.effectors, names=("cursor",))
 
 

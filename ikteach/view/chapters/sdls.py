@@ -145,7 +145,7 @@ def _table(found: Directions, answers: list[Array]) -> Markup:
 
 
 def _number(value: float) -> str:
-    """The number, or a word where the error asks for nothing along a direction."""
+    """Write the number, or "none" where the error asks for nothing along a direction."""
     return "none" if np.isnan(value) else f"{value:.3g}"
 
 

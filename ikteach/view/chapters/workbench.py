@@ -343,8 +343,7 @@ class Workbench(Live):
         self._figures = figures
         self._back_to_now()
         old, old_targets = self.scene, self.targets
-        self.scene = self._scene(self.session)
-        self.scene.driver.on_sign = self._seen
+        self.watch(self._scene(self.session))
         self.targets = self._targets()
         box = self.panels["Target position"].widget
         box.children = [self.targets, *box.children[1:]]

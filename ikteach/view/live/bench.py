@@ -30,7 +30,7 @@ class Bench(Cell):
     scene     a live scene that `show` moves, above the picture
     panel     the controls as they are laid out; one under the other, if not given
 
-    What goes wrong in `show` or in a button is told in the bench, and the bench stays. A subclass
+    The status says what goes wrong in `show` or in a button, and the bench stays. A subclass
     says what it is made of, and overrides nothing.
     """
 
@@ -111,7 +111,7 @@ class Bench(Cell):
         if scene is None:
             assert self.note is not None
             return [*rows, self.status, self._picture, self.note.widget, self._below]
-        scene.driver.on_sign = self._seen
+        scene.driver.on_page = self._seen
         scene.widget.layout.width = f"{scene.renderer.width}px"  # so that the panel has its place
         column = widgets.VBox(rows, layout=widgets.Layout(flex="1 1 380px", min_width="340px"))
         beside = widgets.HBox([scene.widget, column], layout=widgets.Layout(flex_flow="row wrap"))

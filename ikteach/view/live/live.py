@@ -42,7 +42,7 @@ class Live(Cell):
     def watch(self, scene: Scene) -> None:
         """Have this scene follow the session from now on."""
         self.scene, self.note = scene, scene.note
-        scene.driver.on_sign = self._seen
+        scene.driver.on_page = self._seen
 
     def draw(self) -> None:
         """Have the scene show what the session says."""
@@ -115,7 +115,7 @@ class Live(Cell):
             self.guarded(self.play if change["new"] else self.pause)()
 
     def _seen(self, new: bool) -> None:
-        """A page is new, or has drawn: then the loop goes on, should it have given up on it."""
+        """Go on for a page that is new or has drawn, should the loop have given up on it."""
         if new or self.playing:
             self.wake()
 
@@ -138,7 +138,7 @@ class Live(Cell):
     async def _go_on(self) -> None:
         """Let time pass, tick by tick, while it plays and somebody looks."""
         due, session = monotonic(), self.session
-        while self.playing and not (self.settled or self.scene.driver.alone):
+        while self.playing and not (self.settled or self.scene.driver.unwatched):
             due = max(due + session.dt, monotonic() - session.dt)  # late: go on, do not race
             await asyncio.sleep(max(due - monotonic(), 0.001))
             if not self.playing:

@@ -55,7 +55,7 @@ def length_of(run: Log) -> Lengths:
 
 
 def _last_run(run: Log) -> int:
-    """The run that the ticks of this log are of: no reset came after it."""
+    """Find the run of the ticks of this log: no reset came after it."""
     return max((event.run + (event.kind == "reset") for event in run.events), default=0)
 
 
@@ -88,7 +88,7 @@ def error_rows(run: Log, columns: Index, error: Array) -> list[list[str]]:
 
 
 def _at_rows(run: Log, changed: Mapping[int, list[str]]) -> dict[int, list[str]]:
-    """The changes by the row in which they first act: that of the next tick in the log."""
+    """Find the row in which each change first acts: that of the next tick in the log."""
     notes: dict[int, list[str]] = {}
     for tick, words in changed.items():
         row = int(np.searchsorted(run.tick, tick, side="right"))

@@ -28,7 +28,7 @@ class Driver(Living, anywidget.AnyWidget):
     nodes, plan   what it moves, and how (`Move`); set them with `move`
     rows          how many rows a frame has
     description   what the picture shows, in words, for those who cannot see it
-    on_sign       is called with True when a page begins to look and with False when it has
+    on_page       is called with True when a page begins to look and with False when it has
                   drawn, from whichever thread hears of it
     as_png        draws what was shown last, for a page that lacks pythreejs or WebGL
     """
@@ -45,9 +45,9 @@ class Driver(Living, anywidget.AnyWidget):
         super().__init__(renderer=renderer, **kwargs)
         self.sent = self.drawn = -1
         self._change = 0
-        self.greeted = False
+        self.seen = False
         self.heard = monotonic()
-        self.on_sign: Callable[[bool], None] = lambda new: None
+        self.on_page: Callable[[bool], None] = lambda new: None
         self.as_png: Callable[[], bytes] = bytes
         self._asked = False
         self._act = Actor()
@@ -69,13 +69,13 @@ class Driver(Living, anywidget.AnyWidget):
     @property
     def ready(self) -> bool:
         """Whether a page looks and can take a frame: few are under way to it."""
-        return self.greeted and self.sent - self.drawn < AHEAD
+        return self.seen and self.sent - self.drawn < AHEAD
 
     @property
-    def alone(self) -> bool:
+    def unwatched(self) -> bool:
         """Whether nobody looks: no page yet, or frames are under way and no sign has come back."""
         waiting = self.sent - self.drawn >= AHEAD
-        return not self.greeted or (waiting and monotonic() - self.heard > PATIENCE)
+        return not self.seen or (waiting and monotonic() - self.heard > PATIENCE)
 
     def _hear(self, _: Any, content: dict[str, Any], __: Any) -> None:
         self.heard = monotonic()
@@ -86,11 +86,11 @@ class Driver(Living, anywidget.AnyWidget):
             return
         new = "hello" in content
         if new:
-            self.greeted = True
+            self.seen = True
             self.drawn = self.sent  # what was under way to a page that has gone is lost
         else:
             self.drawn = max(self.drawn, int(content["drawn"]))
-        self.on_sign(new)
+        self.on_page(new)
 
     def _depict(self) -> None:
         """Send the page a picture of the newest frame."""

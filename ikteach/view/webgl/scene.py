@@ -89,7 +89,7 @@ class Scene(Living):
         self.cameras = Cameras(self.renderer, stage, aspect)
         self.look_from(stage.side)
         self.driver = Driver(self.renderer, description=stage.words)
-        self.driver.on_sign = self._greet
+        self.driver.on_page = self._greet
         self.driver.as_png = lambda: self.still().png
         self.driver.move(self._moves, self._rows)
         self.note = Note()

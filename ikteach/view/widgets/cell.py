@@ -1,4 +1,4 @@
-"""What a figure or a tool in a cell is made of, whatever it shows."""
+"""The base of every figure and tool in a cell, whatever it shows."""
 
 from collections.abc import Callable
 from typing import Any
@@ -35,7 +35,7 @@ class Cell(Living, widgets.VBox):  # type: ignore[misc]
         """Go on after a guarded callback, whether it failed or not."""
 
     def guarded(self, action: Callable[..., object]) -> Callable[..., None]:
-        """Wrap a callback: the notebook's loop does it, and `status` tells what goes wrong.
+        """Wrap a callback: the notebook's loop does it, and `status` says what goes wrong.
 
         Callbacks may come on another thread; the session, and all else, stays as it was.
         """
@@ -47,7 +47,7 @@ class Cell(Living, widgets.VBox):  # type: ignore[misc]
         return lambda *arguments: self._act(lambda: act(*arguments))
 
     def attempt(self, action: Callable[[], object]) -> None:
-        """Do it now; what went wrong before is over, what goes wrong is told."""
+        """Do it now, and have `status` say what goes wrong; what was wrong is over."""
         with self.status.hold_sync():
             self.status.wrong = ""
             attempt(action, self.status.fail)
@@ -59,7 +59,7 @@ class Cell(Living, widgets.VBox):  # type: ignore[misc]
         return made
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
-        """The live widget, and beside it the still picture."""
+        """Show the live widget, and beside it the still picture."""
         bundle = super()._repr_mimebundle_(**kwargs)
         still = self.still()
         return bundle if still is None or self.note is None else self.note.beside(bundle, still)

@@ -1,6 +1,6 @@
-"""What a front end may lack, told in the cell where the figure would be, with what mends it.
+"""Sentences on what a front end lacks, and how to mend it, where the figure would be.
 
-Three who may tell it, by how far the page comes: the driver (driver.js), if the page has anywidget;
+Three may say it, by how far the page comes: the driver (driver.js), if the page has anywidget;
 a `Note` under the figure, if it has ipywidgets; else the output of the cell as HTML.
 """
 
@@ -56,13 +56,12 @@ class Note:
         """Give the output of a cell, whose widgets this note is among, its still picture."""
         words = in_place_of(still)
         self.widget.value = STYLE + words
-        return {
-            **bundle, "text/html": str(words), "image/png": still.png, "text/plain": still.alt,
-        }  # fmt: skip
+        seen = {"text/html": str(words), "image/png": still.png, "text/plain": still.alt}
+        return {**bundle, **seen}
 
 
 def in_place_of(still: Still) -> Markup:
-    """The picture and why it does not move."""
+    """Show the picture, and say why it does not move."""
     box = (
         '<div class="ikteach-still" style="line-height:1.4"><p style="border-left:4px solid '
         '#d55e00;padding:4px 10px;margin:4px 0">{}</p>{}</div>'
