@@ -1,8 +1,9 @@
 """Life and death of what a cell shows: made whole or not at all, and closed with all it made.
 
-The kernel keeps every widget until it is closed, and tells a page that is loaded anew the state of
-each. The state of one that holds a closed widget cannot be sent, and then no widget of the notebook comes back.
-So nothing here closes a widget but `close_all`, which leaves nobody behind who holds a closed one.
+The kernel keeps every widget until it is closed, and sends a page that is loaded anew the state of
+each. The state of one that holds a closed widget cannot be sent, and then no widget of the notebook
+comes back. So nothing here closes a widget but `close_all`, which leaves nobody behind who holds a
+closed one.
 """
 
 from collections.abc import Callable, Iterable, Iterator
