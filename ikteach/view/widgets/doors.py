@@ -68,7 +68,8 @@ def within(name: str, value: Any, low: float, high: float) -> float:
     real = isinstance(value, Real) and not isinstance(value, bool | np.bool_)
     if not (real and low <= value <= high and value < np.inf):
         allowed = f"{low:g} or more" if high == np.inf else f"from {low:g} to {high:g}"
-        raise ValueError(f"{name} must be a number, {allowed}, not {shown(value)}")
+        what = "a finite number" if low == -np.inf else f"a number, {allowed}"
+        raise ValueError(f"{name} must be {what}, not {shown(value)}")
     return float(value)
 
 
