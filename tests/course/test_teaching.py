@@ -185,10 +185,12 @@ def test_8_the_cap_makes_the_verdict() -> None:
     assert at_2 == pytest.approx(4, abs=0.5)
     assert at_own == pytest.approx(15, abs=2)
     put(race, degrees=2)
-    race.refresh()
+    race.session.tick()
+    race.report()
     assert standing(race.session).loc["dls", "foot.l"] == pytest.approx(4.4, abs=0.5)
     put(race, caps=OWN)
-    race.refresh()
+    race.session.tick()
+    race.report()
     assert standing(race.session)["jitter"]["pseudoinverse"] == pytest.approx(15, abs=2)
 
 

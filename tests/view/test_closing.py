@@ -4,6 +4,7 @@ import ast
 import importlib
 import json
 import pkgutil
+import sys
 from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
@@ -158,7 +159,9 @@ def all_that_live() -> set[str]:
         one = waiting.pop()
         below = [each for each in one.__subclasses__() if each.__module__.startswith("ikteach.")]
         waiting += below
-        if one.__module__.startswith("ikteach.") and not below:
+        # A module whose first import failed halfway leaves classes that nobody can find.
+        there = getattr(sys.modules.get(one.__module__), one.__qualname__, None) is one
+        if one.__module__.startswith("ikteach.") and there and not below:
             found.add(full(one))
     return found
 
