@@ -9,7 +9,6 @@ import pytest
 
 from ikteach import SOLVERS, figures, gait, study, track
 from ikteach.motion.anatomy import anatomy
-from ikteach.motion.live.log import Log
 from ikteach.motion.reach.planar import PlanarReach
 from ikteach.motion.reach.reaching import Reach, reachable_cursors, trial
 from ikteach.motion.reach.ways import WAYS, Way, advance
@@ -174,11 +173,6 @@ CALLS = {
     "anatomy of nothing": (
         lambda: anatomy(*ARM[:1], [0, 0, 0], ARM[1], GOALS[0], "dls", methods=[]),
                            "at least one method"),
-    "log of nothing": (lambda: Log.of_tracks({}, floor=0), "at least one run"),
-    "log of other times": (
-        lambda: Log.of_tracks({"a": study.after(RUN, 0.1)}, floor=0), "say how long a tick is"
-    ),
-    "log of NaN": (lambda: Log.of_tracks({"a": BROKEN}, floor=0), "theta that are not finite"),
     "nearest to NaN": (lambda: nearest(*ARM, [[np.nan, 0, 0]]), "target of 'hand' is not finite"),
     "nearest to words": (lambda: nearest(*ARM, "there"), "targets must be made of numbers"),
     "parts of words": (lambda: Reach(parts="six"), "number of parts must be"),

@@ -12,7 +12,7 @@ from ikteach.arrays import frozen
 from ikteach.body import Effectors, Joint, Tree
 from ikteach.files import HALF, plain, quoted
 from ikteach.motion.live.log import Event, Log
-from ikteach.motion.live.session import in_words
+from ikteach.motion.live.settings import in_words
 
 LONGEST = 200  # letters of a name
 MOST = {"method": 200, "effector": 1000, "joint": 2000}  # of each in a file

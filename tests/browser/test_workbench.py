@@ -16,7 +16,7 @@ LOOPS = (
     "for task in __import__('asyncio').all_tasks(bench._act.loop) if not task.done())"
 )
 
-IN_WORDS = "__import__('ikteach.motion.live.session', fromlist=['x']).in_words"
+IN_WORDS = "__import__('ikteach.motion.live.settings', fromlist=['x']).in_words"
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +55,7 @@ def changed(before: np.ndarray, after: np.ndarray) -> float:
 
 
 def control(name: str) -> str:
-    return f"bench._control({name!r})"
+    return f"next(p.controls[{name!r}] for p in bench.panels.values() if {name!r} in p.controls)"
 
 
 def slide(bench: Notebook, label: str, key: str = "End") -> None:
@@ -144,12 +144,12 @@ def test_motion_and_motion_control(bench: Notebook) -> None:
     bench.settle("bench.session.gait.wound.get('elbow.l')", 0.0)
     before = picture(bench, "drawn_before")
     slide(bench, "drawn + [°]", "End")
-    bench.settle("float(bench._plus.max().round(4))", 1.0472)
+    bench.settle("float(bench.wounds.plus.max().round(4))", 1.0472)
     slide(bench, "drawn ×", "Home")
-    bench.settle("float(bench._times.min())", 0.0)
+    bench.settle("float(bench.wounds.times.min())", 0.0)
     assert changed(before, picture(bench, "drawn_after")) > 0.005
     bench.press("Heal all")
-    bench.settle("[bench.session.gait.wound, float(bench._plus.max())]", [{}, 0.0])
+    bench.settle("[bench.session.gait.wound, float(bench.wounds.plus.max())]", [{}, 0.0])
 
 
 def test_view(bench: Notebook) -> None:
@@ -165,7 +165,7 @@ def test_view(bench: Notebook) -> None:
     bench.press("perspective")
     choose(bench, "View", "three-quarter")
     choose(bench, "J and ellipsoid of", "hand.l")
-    bench.settle("bench._chosen", 3)
+    bench.settle("bench.view.values['effector']", "hand.l")
     assert changed(before, parallel) > 0.03
     layers = bench.kernel("[name for name in bench.scene.layers]")
     for layer in [*layers, "targets"]:
@@ -289,7 +289,7 @@ def test_figures_of_all_methods(bench: Notebook) -> None:
     open_panel(bench, "View")
     for figures in ("all methods, overlaid", "all methods, side by side", "one figure"):
         choose(bench, "Figures", figures)
-        bench.settle("bench._figures", figures)
+        bench.settle("bench.figures", figures)
         bench.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
         bench.settle("bench.scene.driver.seen", True)
         frames_settled(bench)

@@ -22,6 +22,7 @@ from ikteach.view.chapters.jacobian import ColumnPoser
 from ikteach.view.live.joints import Dial
 from ikteach.view.stage.lengths import Lengths, digits_of, round_step
 from ikteach.view.tools.replay import Replay
+from ikteach.view.tools.session_panels import SLIDERS
 from ikteach.view.webgl.targets import Targets
 
 
@@ -115,7 +116,8 @@ def test_a_player_of_a_path_and_back(make):
     path = Path(lambda phase: [[2 + np.cos(phase) / 2, np.sin(phase) / 2, 0]], "circle", speed=30.0)
     player = make(GaitPlayer, figure=figures.planar_arm(3), gait=path)
     assert player.controls["motion"].options == ("circle",)
-    assert not {"wounded", "forward", "back_z_leg"} & set(player.controls)
+    assert set(SLIDERS["Speed"]) <= set(player.controls)
+    assert not set(player.controls) & {"forward", "wounded", *SLIDERS["Steps"]}
     assert player.controls["speed"].value == 30.0
     player.controls["speed"].value = 4.0
     assert player.session.gait.speed == 4.0

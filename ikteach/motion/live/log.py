@@ -8,7 +8,7 @@ import numpy as np
 
 from ikteach.arrays import Array, Mask
 from ikteach.body import Effectors, Tree
-from ikteach.checks import number, numbers, shown
+from ikteach.checks import shown
 from ikteach.motion.track import Track
 
 
@@ -93,10 +93,15 @@ class Log:
 
     @classmethod
     def of(
-        cls, tree: Tree, effectors: Effectors, dt: float, methods: Sequence[str],
-        moments: Sequence[Moment], **others: Any,
-    ) -> "Log":  # fmt: skip
-        """The log of these moments; `others` are its events, settings and dropped."""
+        cls,
+        tree: Tree,
+        effectors: Effectors,
+        dt: float,
+        methods: Sequence[str],
+        moments: Sequence[Moment],
+        **others: Any,
+    ) -> "Log":
+        """Make the log of these moments; `others` are its events, settings and dropped."""
         T, m, n, k = len(moments), len(methods), len(tree), len(effectors)
         shapes = {"targets": (k, 3), "theta": (m, n), "error": (m, k), "capped": (m,)}
         shapes |= {"held": (m, n)}
@@ -108,34 +113,6 @@ class Log:
         }
         return cls(tree, effectors, dt, tuple(methods), **arrays, **others)
 
-    @classmethod
-    def of_tracks(
-        cls, tracks: Mapping[str, Track], *, dt: float | None = None, floor: float
-    ) -> "Log":
-        """Make the log of runs on the same targets (`study.runs`).
-
-        dt     clock time of one tick [s]; if not given, the runs' own: their times, evenly spaced,
-               are the clock then. A gait that goes slower than the clock needs it
-        floor  height of the ground [m]
-        """
-        runs = same_targets(tracks)
-        T, flat = len(runs[0]), np.zeros(len(runs[0]))
-        if runs[0].theta.ndim != 2:
-            raise ValueError(f"a log is of single runs, not of batches {runs[0].theta.shape[1:-1]}")
-        dt = _spacing(runs[0].times) if dt is None else number("dt", dt)
-        (floor,) = numbers("floor", [floor])
-
-        def stacked(what: str) -> Any:
-            return np.stack([getattr(run, what) for run in runs], axis=1)
-
-        return cls(
-            runs[0].tree, runs[0].effectors, dt, tuple(tracks),
-            tick=np.arange(1, T + 1), time=runs[0].times, phase=flat, advance=flat,
-            floor=flat + floor, shown=np.zeros(T, dtype=np.int64), targets=runs[0].targets,
-            theta=stacked("theta"), error=stacked("error"), capped=stacked("capped") > 0,
-            held=stacked("held"),
-        )  # fmt: skip
-
     def __len__(self) -> int:
         return len(self.tick)
 
@@ -145,20 +122,28 @@ class Log:
         return np.asarray(self.dt * self.tick, dtype=float)
 
     def tracks(self) -> dict[str, Track]:
-        """The run of each method; empty if there is no tick."""
+        """Give the run of each method, {method: Track}; empty if there is no tick."""
         if not len(self):
             return {}
-        return {
-            name: Track(
-                name, self.tree, self.effectors, self.time, self.targets, self.theta[0, i],
-                self.theta[:, i], self.error[:, i], self.capped[:, i].astype(float),
-                self.held[:, i], seconds=float("nan"),
-            )
-            for i, name in enumerate(self.methods)
-        }  # fmt: skip
+        return {name: self._track(i) for i, name in enumerate(self.methods)}
+
+    def _track(self, i: int) -> Track:
+        return Track(
+            method=self.methods[i],
+            tree=self.tree,
+            effectors=self.effectors,
+            times=self.time,
+            targets=self.targets,
+            start=self.theta[0, i],
+            theta=self.theta[:, i],
+            error=self.error[:, i],
+            capped=self.capped[:, i].astype(float),
+            held=self.held[:, i],
+            seconds=float("nan"),
+        )
 
     def lost(self) -> str:
-        """A sentence on what the log no longer holds; empty if it holds all."""
+        """Say in a sentence how much was dropped; empty if all is there."""
         gone = {what: number for what, number in self.dropped.items() if number}
         if not gone:
             return ""
@@ -196,14 +181,3 @@ def of_run(run: Track) -> Track:
         if not np.isfinite(getattr(run, what)).all():
             raise ValueError(f"the run of {shown(run.method)} has {what} that are not finite")
     return run
-
-
-def _spacing(times: Array) -> float:
-    """The time of one tick [s], if ticks are evenly spaced from the first on, which ends at dt."""
-    dt = float(times[-1]) / len(times)
-    if not (dt > 0 and np.allclose(times, dt * np.arange(1, len(times) + 1), rtol=1e-6, atol=0)):
-        raise ValueError(
-            f"the runs' {len(times)} times, to {times[-1]:g} s, are no ticks of a clock that began"
-            " at 0; say how long a tick is, dt [s]"
-        )
-    return dt

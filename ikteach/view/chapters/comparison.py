@@ -10,13 +10,14 @@ from ikteach.markup import Markup
 from ikteach.motion import BUSS_CAPS
 from ikteach.motion.gait import stature
 from ikteach.motion.live.session import Session
+from ikteach.motion.live.settings import SESSION, check_options
 from ikteach.motion.methods import Methods
-from ikteach.view.chapters.gait import other_motion, table
-from ikteach.view.live.controls import motions
+from ikteach.view.chapters.gait import table
 from ikteach.view.live.live import Live
 from ikteach.view.live.panel import Does, Panel, button, choice, slider
 from ikteach.view.live.strips import SECONDS, Strips
 from ikteach.view.stage.lengths import Lengths
+from ikteach.view.tools.session_panels import motions, other_motion
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import doors
 from ikteach.view.widgets.prose import Prose
@@ -45,6 +46,7 @@ class Race(Live):
         **options: Any,
     ) -> None:
         degrees = doors.within("degrees", degrees, *CAP)
+        check_options(options, [*SESSION, "degrees", "slot"])
         session = Session(methods=methods, **options)
         super().__init__(session, _scene(session), slot, Strips(session))
         self._table = Prose()

@@ -1,22 +1,27 @@
 """The walking human of chapter 7: scene, controls, curves and table, alive."""
 
-from dataclasses import replace
 from typing import Any
 
 import ipywidgets as widgets
 
 from ikteach.markup import Markup
-from ikteach.motion.gait import MOTIONS, WOUND, Gait
+from ikteach.motion.gait import WOUND, Gait
 from ikteach.motion.live.session import Session
+from ikteach.motion.live.settings import SESSION, check_options
 from ikteach.motion.methods import Methods
-from ikteach.motion.path import Path
 from ikteach.study import distances
-from ikteach.view.live.controls import SLIDERS, motions
 from ikteach.view.live.live import Live
-from ikteach.view.live.panel import Does, Panel, button, choice, dropdown, slider, tick_box
+from ikteach.view.live.panel import Does, Panel, button, choice, dropdown, tick_box
 from ikteach.view.live.strips import SECONDS, Strips
 from ikteach.view.stage.lengths import Lengths
 from ikteach.view.stage.stage import sides_of
+from ikteach.view.tools.session_panels import (
+    SLIDERS,
+    gait_rows,
+    gait_values,
+    motions,
+    other_motion,
+)
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import prose
 from ikteach.view.widgets.prose import Prose
@@ -36,12 +41,13 @@ class GaitPlayer(Live):
     def __init__(
         self, methods: Methods | None = None, *, slot: str | None = "gait", **options: Any
     ) -> None:
+        check_options(options, [*SESSION, "slot"])
         session = Session(methods=methods, **options)
         scene = Scene(session.tree, session.effectors, slot=None)
         super().__init__(session, scene, slot, Strips(session))
         self._table = Prose()
         self._first = session.gait
-        self.panel = self._panel()
+        self.panel = self._make_panel()
         self.controls = self.panel.controls
         self.children = [
             widgets.HBox([self.scene.widget, self.panel.widget]),
@@ -50,6 +56,49 @@ class GaitPlayer(Live):
             self._table,
         ]
         self.report()
+
+    def _make_panel(self) -> Panel:
+        session, scene = self.session, self.scene
+        look: dict[str, Any] = {"label_width": "60px"}
+        walks, able = isinstance(session.gait, Gait), set(WOUND) <= set(session.tree.names)
+        wounded = Does(tick_box("wounded", bool(session.gait.wound)), self._wound)
+        forward = Does(
+            tick_box("moving forward", session.gait.forward),
+            lambda on: session.change(forward=on),
+        )
+        checks = {"wounded": wounded} if able else {}
+        checks |= {"forward": forward} if walks else {}
+        method = choice("Method", list(session.methods), session.method, **look)
+        motion = choice("Motion", motions(session), session.gait.name, **look)
+        sides = dropdown("View", sides_of(session.tree, session.effectors), **look)
+        groups = SLIDERS if walks else ["Speed"]
+        return Panel(
+            "Gait",
+            [
+                {
+                    "playing": self.play_button,
+                    "step": Does(button("Step"), self.step),
+                    "reset": Does(button("Reset"), session.reset),
+                },
+                {"method": Does(method, session.show)},
+                {"motion": Does(motion, self._move)},
+                *([checks] if checks else []),
+                {"view": Does(sides, scene.look_from)},
+            ],
+            folded={group: gait_rows(session, group, width="auto") for group in groups},
+            opened=0,
+            shows=lambda: gait_values(session, *groups),
+            guard=self.guarded,
+            width="440px",
+            flex="0 1 auto",
+        )
+
+    def _move(self, name: str) -> None:
+        self.session.gait = other_motion(self.session, name, self._first)
+        self.panel.agree()
+
+    def _wound(self, on: bool) -> None:
+        self.session.change(wound=WOUND if on else {})
 
     @property
     def words(self) -> str:
@@ -73,66 +122,6 @@ class GaitPlayer(Live):
         session = self.session
         self.scene.driver.description = self.words
         self._table.value = table(session, session.method)
-
-    def _panel(self) -> Panel:
-        session, gait = self.session, self.session.gait
-        walks, able = isinstance(gait, Gait), set(WOUND) <= set(session.tree.names)
-        methods = choice("Method", list(session.methods), session.method, label_width="60px")
-        motion = choice("Motion", motions(session), gait.name, label_width="60px")
-        sides = dropdown("View", sides_of(session.tree, session.effectors), label_width="60px")
-        boxes = {}
-        if able:
-            boxes["wounded"] = Does(tick_box("wounded", bool(gait.wound)), self._wound)
-        if walks:
-            ahead = tick_box("moving forward", gait.forward)
-            boxes["forward"] = Does(ahead, lambda on: session.change(forward=on))
-        clock = {
-            "playing": self.play_button,
-            "step": Does(button("Step"), self.step),
-            "reset": Does(button("Reset"), session.reset),
-        }
-        return Panel(
-            "Gait",
-            [
-                clock,
-                {"method": Does(methods, session.show)},
-                {"motion": Does(motion, self._move)},
-                *([boxes] if boxes else []),
-                {"view": Does(sides, self.scene.look_from)},
-            ],
-            folded={
-                group: [{name: self._slider(name, *spec)} for name, spec in sliders.items()]
-                for group, sliders in SLIDERS.items()
-                if walks or group == "Speed"
-            },
-            opened=0,
-            guard=self.guarded,
-            width="440px",
-            flex="0 1 auto",
-        )
-
-    def _slider(self, name: str, label: str, low: float, high: float, step: float) -> Does:
-        """Make the slider of a parameter of the gait."""
-        value = getattr(self.session.gait, name)
-        made = slider(label, value, low, high, step, width="auto", label_width="140px")
-        return Does(made, lambda value: self.session.change(**{name: value}))
-
-    def _wound(self, on: bool) -> None:
-        self.session.change(wound=WOUND if on else {})
-
-    def _move(self, motion: str) -> None:
-        session = self.session
-        session.gait = other_motion(session, motion, self._first)
-        parameters = vars(session.gait).keys() & self.controls.keys() - {"forward"}
-        self.panel.put(**{name: getattr(session.gait, name) for name in parameters})
-
-
-def other_motion(session: Session, name: str, start: Gait | Path) -> Gait | Path:
-    """Give the motion of that name, or `start`, with the present wound and way."""
-    gait: Gait | Path = MOTIONS[name] if name in MOTIONS and name != start.name else start
-    if isinstance(gait, Gait):
-        return replace(gait, forward=session.gait.forward, wound=session.gait.wound)
-    return replace(gait, wound=session.gait.wound)
 
 
 def words(session: Session) -> str:

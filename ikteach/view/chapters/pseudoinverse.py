@@ -68,9 +68,7 @@ class CapPlayer(Cell):
         self.player.acted()
 
     def _cap(self, degrees: float) -> None:
-        for name, solver in rules(degrees).items():
-            if name != "no cap":
-                self.player.session.use(name, solver)
+        self.player.session.use(rules(degrees))
 
     def _put(self, x_hand: float) -> None:
         self.player.session.change(x_hand=x_hand)

@@ -8,7 +8,7 @@ import ipywidgets as widgets
 
 from ikteach.view.widgets import doors
 
-Act = Callable[..., object]
+Act = Callable[..., Any]
 Row = Any  # {name: control or Does}, or a widget
 
 
@@ -26,6 +26,7 @@ class Panel:
               by side, or any widget
     folded    {title: rows} of an accordion under them
     opened    the place of the part of it that is open, None if none is
+    shows     gives the values of controls, by name, that `agree` sets
     guard     wraps each action; of a live figure `Live.guarded`, which reports errors
     layout    of the whole
 
@@ -40,10 +41,11 @@ class Panel:
         *,
         folded: Mapping[str, Sequence[Row]] | None = None,
         opened: int | None = None,
+        shows: Callable[[], Mapping[str, Any]] = dict,
         guard: Callable[[Act], Act] = lambda act: act,
         **layout: Any,
     ) -> None:
-        self.title, self._guard = title, guard
+        self.title, self._shows, self._guard = title, shows, guard
         self.controls: dict[str, Any] = {}
         self._put: dict[str, Any] = {}  # values from the program, which a page may have rounded
         self._quiet = False
@@ -73,6 +75,10 @@ class Panel:
                 control.value = self._put[name] = value
         finally:
             self._quiet = False
+
+    def agree(self) -> None:
+        """Set controls to what they stand for, without acting."""
+        self.put(**self._shows())
 
     def disable(self) -> None:
         """Let no person change anything more."""

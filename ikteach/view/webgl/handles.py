@@ -10,7 +10,7 @@ from ipywidgets import Widget, widget_serialization
 from ikteach.view.stage.skin import SKY
 from ikteach.view.webgl.positions import Positions
 from ikteach.view.webgl.scene import Scene
-from ikteach.view.widgets.actor import in_words
+from ikteach.view.widgets.actor import Actor, in_words
 from ikteach.view.widgets.closing import Living
 from ikteach.view.widgets.esm import esm
 
@@ -18,14 +18,14 @@ STEP = 0.05  # [m] one press of an arrow key, on a figure of a human's size
 
 
 class Handles(Living, anywidget.AnyWidget):
-    """Lets the targets of a scene be moved in it, and writes where they are into `positions`.
+    """Handles at the targets of a scene, which move `positions`.
 
     Mouse, touch   drag a target in the plane that faces the camera, which stands still meanwhile
     Tab            chooses a target, or leaves the picture after the last one
     arrows         move it along the axes of the world that lie nearest to right and up in the
                    picture, Page Up and Page Down away and near, with Shift a tenth as far; they
                    turn and move the camera while no target is chosen
-    Escape         takes the last move back, as `undo` does
+    Escape         takes the last change back, as `undo` does
 
     Whoever wants to know asks `positions.on_change`. Display the scene; the handles are under it.
     """
@@ -44,13 +44,14 @@ class Handles(Living, anywidget.AnyWidget):
     alert = traitlets.Unicode().tag(sync=True)
 
     def __init__(self, scene: Scene, positions: Positions) -> None:
-        self.positions = positions
+        self.positions, self._act = positions, Actor()
         unit = scene.stage.unit
         ring = three.Mesh(
             three.TorusBufferGeometry(0.09 * unit, 0.009 * unit, 8, 40),
             three.MeshBasicMaterial(color=SKY, depthTest=False, transparent=True),
-            renderOrder=10, frustumCulled=False,
-        )  # fmt: skip
+            renderOrder=10,
+            frustumCulled=False,
+        )
         super().__init__(
             renderer=scene.renderer,
             halo=ring,
@@ -65,19 +66,21 @@ class Handles(Living, anywidget.AnyWidget):
         scene.mount(self)
 
     def undo(self) -> None:
-        """Take the last move back."""
-        index = self.positions.undo()
+        """Take the last change back."""
+        said = self.positions.undo()
         self.send({"let": True})
-        if index is not None:
-            self.send({"say": f"Taken back. {self.positions.words(index)}"})
+        self.send({"say": said})
 
     def _hear(self, _: Any, content: dict[str, Any], __: Any) -> None:
+        self._act(lambda: self._obey(content))
+
+    def _obey(self, content: dict[str, Any]) -> None:
         try:
             if "undo" in content:
                 self.undo()
             elif "target" in content:
-                again = not content["fresh"]
-                self.positions.drag(int(content["target"]), content["at"], again=again)
+                going_on = not content["fresh"]
+                self.positions.drag(int(content["target"]), content["at"], going_on=going_on)
             self.alert = ""
         except Exception as error:  # of whoever follows the targets
             self.alert = in_words(error)

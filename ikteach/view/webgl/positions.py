@@ -1,6 +1,8 @@
-"""Where the targets are: the one truth that handles, sliders, number boxes and keys change."""
+"""Where targets are and may be, for the handles, sliders, boxes and keys that move them."""
 
+from collections import deque
 from collections.abc import Callable, Sequence
+from typing import Protocol
 
 import numpy as np
 
@@ -9,7 +11,7 @@ from ikteach.checks import numbers
 from ikteach.view.stage.lengths import METRE, Lengths, digits_of
 
 AXES = "xyz"
-KEEP = 200  # moves that can be taken back
+KEEP = 200  # moves that can be undone where there is no session
 
 
 def _each(name: str, values: ArrayLike, shape: tuple[int, int]) -> Array:
@@ -23,88 +25,123 @@ def _each(name: str, values: ArrayLike, shape: tuple[int, int]) -> Array:
         raise ValueError(f"{name} must be one number or {shape}, not {ends.shape}") from None
 
 
+class Keeper(Protocol):
+    """Whoever keeps the targets of a figure and can undo their moves: a `Session`, or `Moves`."""
+
+    targets: Array
+
+    def aim(self, which: int, position: ArrayLike, *, going_on: bool = False) -> None:
+        """Put one target to a position (3,) [m]; `going_on`: as part of the move before."""
+
+    def undo(self) -> object:
+        """Take the last change back; LookupError if there is none."""
+
+
+class Moves:
+    """Targets (k, 3) [m] that nobody else keeps, and the moves that can be undone."""
+
+    def __init__(self, targets: Array) -> None:
+        self.targets = targets
+        self._before: deque[Array] = deque(maxlen=KEEP)
+
+    def aim(self, which: int, position: ArrayLike, *, going_on: bool = False) -> None:
+        """Put one target to a position (3,) [m]; `going_on`: as part of the move before."""
+        if not (going_on and self._before):
+            self._before.append(self.targets)
+        self.targets = self.targets.copy()
+        self.targets[which] = position
+
+    def undo(self) -> None:
+        """Take the last move back; LookupError if there is none."""
+        if not self._before:
+            raise LookupError("there is no move to undo")
+        self.targets = self._before.pop()
+
+
 class Positions:
-    """The positions of k targets (k, 3) [m], each within its range, and how to take moves back.
+    """The positions of k targets [m], each within its range, as panel and handles move them.
 
-    names      what the targets are called
+    names      of the targets
+    keeper     keeps the targets; here is nothing but their ranges
     low, high  (k, 3) the range of each coordinate [m]
-    unit       in which they are told to a person
-    step       what is told apart [m]
+    unit       in which a person reads lengths
+    step       the smallest difference that a person is to see [m]
+    undo       undoes instead of the keeper, if whoever shows it has more to do then
 
-    It stores, and tells whoever asked with `on_change`; it solves nothing.
+    Whoever asked with `on_change` hears of each move.
     """
 
     def __init__(
-        self, names: Sequence[str], start: ArrayLike, low: ArrayLike, high: ArrayLike,
-        *, unit: Lengths = METRE, step: float = 0.01,
-    ) -> None:  # fmt: skip
+        self,
+        names: Sequence[str],
+        keeper: Keeper,
+        low: ArrayLike,
+        high: ArrayLike,
+        *,
+        unit: Lengths = METRE,
+        step: float = 0.01,
+        undo: Callable[[], object] | None = None,
+    ) -> None:
         self.unit, self._digits = unit, digits_of(step / unit.metres)
-        self.names = list(names)
+        self.names, self.keeper, self._undo = list(names), keeper, undo or keeper.undo
         shape = (len(self.names), 3)
-        self._now = numbers("start", start).copy()
-        if self._now.shape != shape:
-            raise ValueError(f"{shape[0]} targets need positions {shape}, not {self._now.shape}")
+        if keeper.targets.shape != shape:
+            raise ValueError(
+                f"{shape[0]} targets need positions {shape}, not {keeper.targets.shape}"
+            )
         self.low, self.high = _each("low", low, shape), _each("high", high, shape)
-        self._past: list[Array] = []
-        self._tell: list[Callable[[int, Array], None]] = []
-        for i, position in enumerate(self._now):
-            self.check(i, position)
+        self._listeners: list[Callable[[int, Array], None]] = []
 
     @property
     def now(self) -> Array:
-        """A copy of the positions, (k, 3) [m]."""
-        return self._now.copy()
+        """Where the targets are, within their ranges, (k, 3) [m]."""
+        return np.clip(self.keeper.targets, self.low, self.high)
 
     def on_change(self, tell: Callable[[int, Array], None]) -> None:
         """Call tell(index, position (3,)) after each move, from whichever thread it came."""
-        self._tell.append(tell)
+        self._listeners.append(tell)
 
-    def move(self, index: int, position: ArrayLike, *, again: bool = False) -> None:
+    def move(self, index: int, position: ArrayLike, *, going_on: bool = False) -> None:
         """Move one target; ValueError with the range if it would leave it.
 
-        `again` goes on with the move before, so that one `undo` takes back a whole drag.
+        `going_on` says that it is part of the move before: one `undo` takes back a whole drag.
         """
         new = np.asarray(position, dtype=float)
         self.check(index, new)
-        if not (again and self._past):
-            self._past = [*self._past[1 - KEEP :], self.now]
-        self._now[index] = new
-        self._told(index)
+        self.keeper.aim(index, new, going_on=going_on)
+        self._moved(index)
 
-    def drag(self, index: int, position: ArrayLike, *, again: bool = False) -> None:
+    def drag(self, index: int, position: ArrayLike, *, going_on: bool = False) -> None:
         """Move one target, and stop it at the edge of its range."""
         inside = np.clip(np.asarray(position, dtype=float), self.low[index], self.high[index])
-        self.move(index, inside, again=again)
+        self.move(index, inside, going_on=going_on)
 
-    def follow(self, positions: ArrayLike) -> None:
-        """Take over where the targets have gone by themselves, as far as they may."""
-        self._now[:] = np.clip(np.asarray(positions, dtype=float), self.low, self.high)
-
-    def undo(self) -> int | None:
-        """Take the last move back; the target that moved, or None if there is nothing left."""
-        if not self._past:
-            return None
-        before = self._past.pop()
-        moved = np.flatnonzero((before != self._now).any(axis=-1))
-        self._now[:] = before
+    def undo(self) -> str:
+        """Take the last change back, and say so in a sentence."""
+        before = self.now
+        try:
+            self._undo()
+        except LookupError:
+            return "There is nothing to take back."
+        moved = np.flatnonzero((before != self.now).any(axis=-1)).tolist()
         for index in moved:
-            self._told(int(index))
-        return int(moved[0]) if len(moved) else None
+            self._moved(index)
+        return f"Taken back. {self.words(moved[0]) if moved else ''}".strip()
 
     def words(self, index: int) -> str:
-        """Where a target is, to be read or heard."""
-        x, y, z = (self._said(value) for value in self._now[index])
+        """Say where a target is, to be read or heard."""
+        x, y, z = (self._said(value) for value in self.now[index])
         return f"{self.names[index]}: x {x}, y {y}, z {z} {self.unit.name}"
 
     def _said(self, length: float) -> str:
         return self.unit.number(length, self._digits)
 
-    def _told(self, index: int) -> None:
-        for tell in self._tell:
-            tell(index, self._now[index].copy())
+    def _moved(self, index: int) -> None:
+        for tell in self._listeners:
+            tell(index, self.now[index])
 
     def check(self, index: int, position: Array) -> None:
-        """ValueError with the range if target `index` may not be there."""
+        """Raise ValueError with the range if target `index` may not be there."""
         if position.shape != (3,):
             raise ValueError(f"{self.names[index]} needs three numbers, not {position.tolist()}")
         for axis, value, low, high in zip(

@@ -13,10 +13,10 @@ from ikteach.view.stage.lengths import Lengths, digits_of, round_step
 from ikteach.view.stage.stage import View
 from ikteach.view.webgl.handles import Handles
 from ikteach.view.webgl.objects import effector_colour
-from ikteach.view.webgl.positions import Positions
+from ikteach.view.webgl.positions import Keeper, Moves, Positions
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import doors
-from ikteach.view.widgets.actor import in_words
+from ikteach.view.widgets.actor import Actor, in_words
 from ikteach.view.widgets.closing import Living
 from ikteach.view.widgets.esm import esm
 
@@ -26,9 +26,12 @@ ROOM = 1.5  # [m] how far a target of a human may go from where it starts, each 
 class Targets(Living, anywidget.AnyWidget):
     """A panel for the targets of a scene, and handles in it if it is a live one.
 
-    scene      what shows them; it is not told to, that is the business of `on_change`
-    start      where the targets are at first, (k, 3) [m]
-    low, high  ranges [m], one number or (k, 3); None: so far as `ROOM` from the start
+    scene      shows them; it is not told, that is the business of `on_change`
+    start      where the targets are at first, (k, 3) [m]; not if there is a session
+    low, high  ranges [m], one number or (k, 3); None: as far as `ROOM` from the start
+    session    keeps the targets and undoes their moves, as a `Session` does; if none is given, the
+               panel does so itself
+    undo       undoes instead of the session, if whoever shows it has more to do then
     slot       only one of a slot lives at a time: to run a cell again closes the older one
 
     `positions` (k, 3) is where they are, however they were moved: dragged, by keys, by sliders, by
@@ -48,24 +51,40 @@ class Targets(Living, anywidget.AnyWidget):
     digits = traitlets.Int(2).tag(sync=True)
 
     def __init__(
-        self, scene: View, start: ArrayLike, *, low: ArrayLike | None = None,
-        high: ArrayLike | None = None, slot: str | None = "targets",
-    ) -> None:  # fmt: skip
+        self,
+        scene: View,
+        start: ArrayLike | None = None,
+        *,
+        low: ArrayLike | None = None,
+        high: ArrayLike | None = None,
+        session: Keeper | None = None,
+        undo: Callable[[], object] | None = None,
+        slot: str | None = "targets",
+    ) -> None:
         self.slot = slot
         doors.has("scene", scene, "a Scene or a StillScene", "stage", "show")
-        start = numbers("start", start)
-        if not np.isfinite(start).all():
-            raise ValueError("start is not finite: each target needs three numbers")
         stage = scene.stage
+        first: Any = start if session is None else session.targets
+        at = numbers("start", first)
+        if not np.isfinite(at).all():
+            raise ValueError("start is not finite: each target needs three numbers")
         names = stage.effectors.names
-        at = np.asarray(start, dtype=float)
         room = ROOM * stage.unit * stage.free
         unit = Lengths.of_places(stage.extent.radius)
         step = round_step(2 * ROOM * stage.unit / unit.metres)
         self._model = Positions(
-            names, at, at - room if low is None else low, at + room if high is None else high,
-            unit=unit, step=step * unit.metres,
-        )  # fmt: skip
+            names,
+            session or Moves(at.copy()),
+            at - room if low is None else low,
+            at + room if high is None else high,
+            unit=unit,
+            step=step * unit.metres,
+            undo=undo,
+        )
+        if session is None:
+            for i, position in enumerate(at):
+                self._model.check(i, position)
+        self._act = Actor()
         self.handles = Handles(scene, self._model) if isinstance(scene, Scene) else None
         super().__init__(
             names=list(names),
@@ -78,7 +97,7 @@ class Targets(Living, anywidget.AnyWidget):
             step=step,
             digits=digits_of(step),
         )
-        self._model.on_change(self._agree)
+        self._model.on_change(lambda *_: self.agree())
         self.on_msg(self._hear)
 
     @property
@@ -92,11 +111,15 @@ class Targets(Living, anywidget.AnyWidget):
 
     def follow(self, positions: ArrayLike) -> None:
         """Show where the targets have gone by themselves; nobody is told, nothing is undone."""
-        self._model.follow(positions)
+        self._model.keeper.targets = np.array(positions, dtype=float)
+        self.agree()
+
+    def agree(self) -> None:
+        """Show where the targets are now."""
         self.values = self._model.now.tolist()
 
     def undo(self) -> None:
-        """Take the last move back."""
+        """Take the last change back."""
         if self.handles is not None:
             self.handles.undo()
         else:
@@ -107,10 +130,10 @@ class Targets(Living, anywidget.AnyWidget):
         self._model.on_change(tell)
         return tell
 
-    def _agree(self, index: int, position: Array) -> None:
-        self.values = self._model.now.tolist()
-
     def _hear(self, _: Any, content: dict[str, Any], __: Any) -> None:
+        self._act(lambda: self._obey(content))
+
+    def _obey(self, content: dict[str, Any]) -> None:
         try:
             self.alert = ""
             if "undo" in content:
@@ -128,7 +151,7 @@ class Targets(Living, anywidget.AnyWidget):
         position = self.positions[index]
         position[axis] = np.nan if value is None else float(value)
         if not content.get("typed"):
-            self._model.drag(index, position, again=not content["fresh"])
+            self._model.drag(index, position, going_on=not content["fresh"])
             return
         try:
             self._model.check(index, position)

@@ -11,11 +11,11 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from ikteach import SOLVERS, dls, figures, forward, locate, step
 from ikteach.motion import clip, gait
-from ikteach.motion.live import session as session_module
-from ikteach.motion.live.log import Log
-from ikteach.motion.live.session import Session, in_words
+from ikteach.motion.live import history
+from ikteach.motion.live.session import Session
+from ikteach.motion.live.settings import in_words
 from ikteach.motion.mix import Mix
-from ikteach.study import angles, events, runs, ticks
+from ikteach.study import angles, events, ticks
 
 HAND = [0.1, 0.2, 0.3]
 
@@ -161,7 +161,7 @@ def test_what_changes_nothing_is_no_event(session):
 
 def test_a_slider_on_its_way_is_one_change(session, monkeypatch):
     now = 100.0
-    monkeypatch.setattr(session_module, "monotonic", lambda: now)
+    monkeypatch.setattr(history, "monotonic", lambda: now)
     for speed in (6.0, 6.5, 7.0):
         session.change(speed=speed)
         now += 0.3
@@ -225,7 +225,7 @@ def test_undo_takes_back_one_change_after_the_other(changes):
     session = run(Session(methods={name: SOLVERS[name] for name in ("dls", "sdls")}), 2)
     states = []
     for change in changes:
-        session._moved = -1e9  # each is a move of its own
+        session.history.settle()  # each is a move of its own
         states.append(session.settings())
         CHANGES[change](session)
     for state in reversed(states):
@@ -343,33 +343,75 @@ def test_the_log_as_tables(session):
     assert said["tick"].tolist() == [3]
 
 
-def test_a_log_of_tracks():
-    tree, effectors = figures.human()
-    tracks = runs(tree, effectors, gait.walking(gait.walking.clock(4)), ["dls", "sdls"])
-    log = Log.of_tracks(tracks, floor=-0.88)
-    assert log.methods == ("dls", "sdls")
-    assert_array_equal(log.theta[:, 1], tracks["sdls"].theta)
-    assert_array_equal(log.tracks()["dls"].held, tracks["dls"].held)
-    assert_allclose(log.clock, tracks["dls"].times)
-    assert len(ticks(log)) == 4 * 2 * 4
-    with pytest.raises(ValueError, match="at least one run"):
-        Log.of_tracks({}, floor=0)
-    other = runs(tree, effectors, gait.walking(gait.walking.clock(3)), ["dls"])
-    with pytest.raises(ValueError, match="the same targets"):
-        Log.of_tracks({"one": tracks["dls"], "other": other["dls"]}, floor=0)
+REFUSED = [
+    ({"max_stp": 1}, LookupError, "no option 'max_stp'; did you mean 'max_step'"),
+    ({"figur": 1}, LookupError, "no option 'figur'; did you mean 'figure'"),
+    ({"damping": 1}, LookupError, "no option 'damping'"),
+    ({"mobility": [1]}, LookupError, "no option 'mobility'"),
+    ({"max_step": np.nan}, ValueError, "max_step must be 0 or more, not nan"),
+    ({"limits": "hold"}, TypeError, "limits must be a function, not 'hold'"),
+    ({"dt": 0}, ValueError, "dt must be more than 0, not 0"),
+    ({"dt": np.nan}, ValueError, "dt must be 0 or more, and finite, not nan"),
+    ({"dt": -1}, ValueError, "dt must be 0 or more, and finite, not -1"),
+    ({"keep": "x"}, ValueError, "keep must be 1 or more, and whole, not 'x'"),
+    ({"keep_events": 0}, ValueError, "keep_events must be 1 or more, and whole, not 0"),
+    ({"gait": "walking"}, TypeError, "a motion is a Gait or a Path, such as gait.walking, not"),
+    ({"figure": figures.human().tree}, TypeError, "a figure is its tree and its effectors"),
+    ({"figure": (figures.human().tree, None)}, TypeError, "must be Effectors, not None"),
+    ({"method": "dsl"}, LookupError, "no method 'dsl'; did you mean 'dls'"),
+]
 
 
-def test_a_log_of_tracks_ticks_as_they_do():
-    """The clock is that of the runs' own times, unless another is given."""
-    walk = gait.walking(gait.walking.clock(6, dt=0.1))
-    fast = runs(*figures.human(), walk, ["dls"], dt=0.1)
-    log = Log.of_tracks(fast, floor=-0.88)
-    assert log.dt == pytest.approx(0.1)
-    assert_allclose(log.clock, fast["dls"].times)
-    slow = Log.of_tracks(fast, dt=0.5, floor=-0.88)
-    assert_allclose(slow.clock, 5 * slow.time)
-    for times in ([1, 2, 4, 8, 16, 32], np.arange(6), np.arange(6) + 0.5):
-        uneven = runs(*figures.human(), walk, ["dls"], times=times)
-        with pytest.raises(ValueError, match="say how long a tick is"):
-            Log.of_tracks(uneven, floor=0)
-        assert Log.of_tracks(uneven, dt=1, floor=0).dt == 1
+@pytest.mark.parametrize(("options", "error", "sentence"), REFUSED)
+def test_no_session_begins_as_it_could_not_go_on(options, error, sentence):
+    with pytest.raises(error, match=sentence):
+        Session(**options)
+
+
+def test_several_solvers_are_one_change(session):
+    before = dict(session.methods)
+    for damping in (0.2, 0.3):
+        session.use({"dls": partial(dls, damping=damping), "sdls": "dls"})
+    assert [str(event) for event in session.events] == [
+        "solver: dls {'function': 'dls', 'damping': 0.3}, sdls dls"
+    ]
+    session.undo()
+    assert session.methods == before
+
+
+@settings(max_examples=30)
+@given(st.lists(st.tuples(st.sampled_from(["hand.l", "hand.r"]), st.integers(1, 60)), max_size=5))
+def test_each_drag_is_one_event_and_one_undo(drags):
+    """Also while the figure plays, with remarks and errors in between."""
+    session, at = Session(methods="dls"), []
+    for name, moves in drags:
+        at.append((session.by_hand, session.targets.copy() if session.by_hand else None))
+        for i in range(moves):
+            session.aim(name, np.add(HAND, [0.01 * i, 0.1 * len(at), 0]), going_on=i > 0)
+            if i % 20 == 1:
+                session.tick()
+                session.note("pause")
+    assert kinds(session).count("target") == len(drags)
+    for by_hand, targets in reversed(at):
+        session.undo()
+        assert session.by_hand == by_hand
+        if by_hand:
+            assert_array_equal(session.targets, targets)
+
+
+def test_a_drag_does_not_go_on_with_what_was_undone(session):
+    session.aim("hand.l", HAND)
+    session.aim("hand.l", [0.2, 0.2, 0.2])
+    session.undo()
+    session.aim("hand.l", [0.3, 0.3, 0.3], going_on=True)  # its beginning was undone
+    session.undo()
+    assert_array_equal(session.targets[3], HAND)
+
+
+def test_a_drag_that_has_not_moved_yet_begins_another_event(session):
+    session.aim("hand.l", HAND)
+    session.aim("hand.l", HAND)  # taken hold of again, where it stands
+    session.aim("hand.l", [0.3, 0.3, 0.3], going_on=True)
+    assert kinds(session) == ["target", "target"]
+    session.undo()
+    assert_array_equal(session.targets[3], HAND)

@@ -8,9 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from ikteach import figures, forward, locate
 from ikteach.body.rotation import sticks
-from ikteach.motion.live.log import Log
 from ikteach.motion.live.session import Session
-from ikteach.study import runs
 from ikteach.view.raster.film import Film, film, shot, shots
 from ikteach.view.raster.raycast import Eye, box, draw, ellipsoid, rod, square
 from ikteach.view.stage.skin import EFFECTOR_COLOURS, SHIRT, SKIN, TROUSERS
@@ -167,10 +165,9 @@ def test_it_moves_and_the_floor_glides(log):
 
 
 def test_any_body_can_be_filmed():
-    arm = figures.planar_arm(3)
-    tracks = runs(*arm, np.array([[[1.0, 1, 0]]] * 3), ["dls"])
-    log = Log.of_tracks(tracks, floor=-1)
-    assert hue(next(film(log, size=(160, 120))), SHIRT).mean() > 0.001
+    session = Session(figures.planar_arm(3), methods="dls")
+    session.tick()
+    assert hue(next(film(session.log(), size=(160, 120))), SHIRT).mean() > 0.001
 
 
 def test_what_cannot_be_filmed(log):

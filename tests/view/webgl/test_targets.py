@@ -5,8 +5,9 @@ import pytest
 from ipywidgets.widgets.widget import _instances
 
 from ikteach.body import figures
+from ikteach.motion.live.session import Session
 from ikteach.view import Scene, StillScene
-from ikteach.view.webgl.positions import Positions
+from ikteach.view.webgl.positions import Moves
 from ikteach.view.webgl.targets import Targets
 
 TREE, EFFECTORS = figures.human()
@@ -163,19 +164,91 @@ def test_closing_frees_every_widget():
     assert set(_instances) - before == set()
 
 
-def test_positions_refuse_a_start_outside():
-    with pytest.raises(ValueError, match="2 targets need positions"):
-        Positions(["a", "b"], [[0, 0, 0]], -1, 1)
-    with pytest.raises(ValueError, match=r"z of a goes from -1.00 to 1.00 m; 2 is not"):
-        Positions(["a"], [[0, 0, 2]], -1, 1)
+def test_a_start_outside_the_range_is_refused():
+    scene = StillScene(*figures.planar_arm(2))
+    with pytest.raises(ValueError, match="1 targets need positions"):
+        Targets(scene, [[0, 0, 0], [0, 0, 0]])
+    with pytest.raises(ValueError, match=r"x of hand goes from -1.00 to 1.00 m; 2 is not"):
+        Targets(scene, [[2, 0, 0]], low=-1, high=1)
+    scene.close()
 
 
 def test_only_so_many_moves_are_kept():
-    positions = Positions(["a"], [[0, 0, 0]], -1, 1)
+    moves = Moves(np.zeros((1, 3)))
     for i in range(500):
-        positions.move(0, [i / 1000, 0, 0])
-    taken = 0
-    while positions.undo() is not None:
-        taken += 1
-    assert taken == 200
-    assert positions.now[0, 0] == pytest.approx(0.299)
+        moves.aim(0, [i / 1000, 0, 0])
+    for _ in range(200):
+        moves.undo()
+    with pytest.raises(LookupError, match="no move to undo"):
+        moves.undo()
+    assert moves.targets[0, 0] == pytest.approx(0.299)
+
+
+@pytest.fixture
+def walker():
+    session, scene = Session(), Scene(TREE, EFFECTORS, slot=None)
+    panel = Targets(scene, session=session)
+    yield session, panel
+    panel.close()
+    scene.close()
+
+
+def drag(panel, index, count):
+    """What the page sends from pointer down to pointer up."""
+    for i in range(count):
+        grip(panel, index, PLACE + [0.001 * i, 0, 0], fresh=i == 0)
+
+
+def kinds(session):
+    return [event.kind for event in session.events]
+
+
+def test_a_session_keeps_the_targets_and_nobody_else(walker):
+    session, panel = walker
+    agrees(panel, session.targets)
+    session.aim("hand.l", PLACE)
+    assert panel.positions[3] == pytest.approx(PLACE)
+    session.tick()
+    session.by_hand = False
+    for _ in range(5):
+        session.tick()
+        assert panel.positions == pytest.approx(session.targets)
+    panel.agree()
+    agrees(panel, session.targets)
+
+
+def test_a_long_drag_is_one_event_and_one_undo_of_the_session(walker):
+    session, panel = walker
+    before = session.targets.copy()
+    drag(panel, 3, 60)
+    assert kinds(session) == ["target"]
+    assert session.targets[3] == pytest.approx(PLACE + [0.059, 0, 0])
+    panel._hear(None, {"undo": True}, [])
+    assert not session.by_hand
+    agrees(panel, before)
+    with pytest.raises(LookupError, match="nothing to undo"):
+        session.undo()
+
+
+def test_two_drags_while_it_plays_are_two_events(walker):
+    session, panel = walker
+    for high in (0, 0.1):
+        for i in range(30):
+            grip(panel, 3, PLACE + [0.001 * i, high, 0], fresh=i == 0)
+            session.tick()
+    assert kinds(session) == ["target", "target"]
+    panel.undo()
+    assert session.targets[3] == pytest.approx(PLACE + [0.029, 0, 0])
+
+
+def test_undo_move_takes_back_whatever_was_changed_last(walker):
+    session, panel = walker
+    sent = []
+    panel.handles.send = sent.append
+    session.show("sdls")
+    panel.undo()
+    panel.undo()
+    assert session.method == "dls"
+    said = [message["say"] for message in sent if "say" in message]
+    assert said == ["Taken back.", "There is nothing to take back."]
+    assert panel.alert == ""

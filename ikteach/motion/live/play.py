@@ -1,0 +1,244 @@
+"""A figure in time: a pose for each method, on the same targets and the same clock."""
+
+from collections import deque
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from ikteach.arrays import Array
+from ikteach.body import Frames, forward, locate
+from ikteach.body.figures import Figure
+from ikteach.checks import count, number, shown
+from ikteach.motion.gait import Gait
+from ikteach.motion.live.history import History
+from ikteach.motion.live.log import Event, Log, Moment
+from ikteach.motion.live.settings import (
+    SESSION,
+    Settings,
+    check_options,
+    figure_of,
+    in_words,
+    motion_of,
+    try_options,
+    usual_methods,
+)
+from ikteach.motion.methods import Methods, methods_of
+from ikteach.motion.mix import Each
+from ikteach.motion.path import Path
+from ikteach.motion.step import step
+from ikteach.motion.track import Track
+from ikteach.names import unknown
+
+LONG = 400  # letters of an error that the log keeps
+
+
+class Play:
+    """A figure that follows its targets as it is set, tick by tick, and records what happens.
+
+    Its options are those of a `Session`, which can also be changed.
+    """
+
+    def __init__(
+        self,
+        figure: Figure | None = None,
+        gait: Gait | Path | None = None,
+        methods: Methods | None = None,
+        *,
+        method: str | None = None,
+        dt: float = 1 / 30,
+        keep: int = 3000,
+        keep_events: int = 1000,
+        **options: Any,
+    ) -> None:
+        self.tree, self.effectors = figure_of(figure)
+        self.dt = number("dt", dt)
+        if not self.dt:
+            raise ValueError(f"dt must be more than 0, not {shown(dt)}")
+        check_options(options, SESSION)
+        try_options(self.tree, self.effectors, options)
+        self.history = History(count("keep", keep), count("keep_events", keep_events))
+        usual = usual_methods(self.tree, self.effectors)
+        known = usual if methods is None else methods_of(methods)
+        method = method or ("dls" if "dls" in known else next(iter(known)))
+        motion = motion_of(self.tree, self.effectors, gait)
+        self._settings = Settings(*motion, known, method, options)
+        self._known(method)
+        self.runs = self.ticks = self._waited = 0
+        self._begin()
+
+    def note(self, kind: str, **what: Any) -> None:
+        """Put an event into the log: a pause, a remark; nothing else happens."""
+        self.history.note(self._event(kind, what))
+
+    def reset(self) -> None:
+        """Go back to the rest pose and the beginning of time, with an empty record.
+
+        Settings stay as they are, targets set by hand too. The events go on.
+        """
+        self.note("reset", ticks=self.ticks)
+        self.runs += 1
+        self._begin()
+
+    # Time passes.
+
+    def tick(self) -> None:
+        """Let one tick of the clock pass; every `gait.slowdown`-th, time leaps and poses follow."""
+        self._waited += 1
+        if self._waited >= self._settings.gait.slowdown:
+            try:
+                self._leap()
+            except Exception as error:  # a student's own solver or path: nothing has happened
+                self._waited -= 1
+                words = str(error)[:LONG] or type(error).__name__
+                if not (self.events and self.events[-1].what == {"words": words}):
+                    self.note("error", words=words)
+                raise
+            self._waited = 0
+        self.ticks += 1
+
+    def ahead(self) -> tuple[float, float, float, Array]:
+        """Time, phase, advance and targets after the next leap."""
+        gait, course = self._settings.gait, self._settings.course
+        elapsed = gait.step_frequency * self.dt * max(self._waited, gait.slowdown)
+        time = self.time + elapsed
+        if self._settings.by_hand is not None:
+            return time, self.phase, self.advance, self.targets
+        phase = self.phase + gait.speed * elapsed
+        gone = course.size * gait.pace * elapsed if gait.forward else 0.0
+        return time, phase, self.advance + gone, course.at(phase)
+
+    def _leap(self) -> None:
+        """Let time leap: solve first, so that a solver that fails changes nothing."""
+        settings, (time, phase, advance, targets) = self._settings, self.ahead()
+        options = settings.options_of_all() | {"mobility": settings.gait.mobility(self.tree)}
+        solver, frames = Each(settings.methods.values()), self.frames
+        to = step(self.tree, self._poses, self.effectors, targets, solver, frames=frames, **options)
+        self._stand(to.theta)
+        self.time, self.phase, self.advance, self.targets = time, phase, advance, targets
+        self.history.add(
+            Moment(
+                tick=self.ticks + 1,
+                time=time,
+                phase=phase,
+                advance=advance,
+                floor=self.floor,
+                shown=self._row(settings.method),
+                targets=targets,
+                theta=to.theta,
+                error=self._distances(),
+                capped=to.capped,
+                held=to.held,
+            )
+        )
+
+    # What can be asked.
+
+    @property
+    def record(self) -> deque[Moment]:
+        """The last ticks in which poses followed."""
+        return self.history.ticks
+
+    @property
+    def events(self) -> deque[Event]:
+        """The last changes, notes and errors."""
+        return self.history.events
+
+    @property
+    def dropped(self) -> int:
+        """How many ticks the record has let go."""
+        return self.history.dropped["ticks"]
+
+    @property
+    def events_dropped(self) -> int:
+        """How many events have been let go."""
+        return self.history.dropped["events"]
+
+    def frames_of(self, method: str) -> Frames:
+        """Where the joints are, in the pose of a method."""
+        row = self._row(method)
+        return Frames(*(part[row] for part in self.frames))
+
+    def options_of(self, method: str) -> dict[str, Any]:
+        """The options of `step` for a method."""
+        return self._settings.options_of(method)
+
+    @property
+    def error(self) -> Array:
+        """Distance of each effector of the shown method to its target, (k,) [m]."""
+        return self._distances()[self._row(self._settings.method)]
+
+    def jitter(self, last: int = 1) -> dict[str, Array]:
+        """‖Δ²θ‖ of each method in the last ticks of the record, {name: (≤ last,)} [rad per tick²].
+
+        Before the first tick of the record the figure is taken to have stood still.
+        """
+        jitter = self.history.jitter(last).reshape(-1, len(self._settings.methods))
+        return dict(zip(self._settings.methods, jitter.T, strict=True))
+
+    @property
+    def floor(self) -> float:
+        """Height of the ground [m]: of a human, that of the lower foot's target."""
+        return self._settings.course.floor
+
+    def log(self, last: int | None = None) -> Log:
+        """What happened, or its last ticks, as data that no longer changes."""
+        history, methods = self.history, list(self._settings.methods)
+        about = {"events": tuple(self.events), "dropped": dict(history.dropped)}
+        about["settings"] = self.settings()
+        return Log.of(self.tree, self.effectors, self.dt, methods, history.last(last), **about)
+
+    def tracks(self, last: int | None = None) -> dict[str, Track]:
+        """The record, or its last ticks, as {method: Track}; empty before the first tick."""
+        ticks, methods = self.history.last(last), list(self._settings.methods)
+        return Log.of(self.tree, self.effectors, self.dt, methods, ticks).tracks()
+
+    def settings(self) -> dict[str, Any]:
+        """How everything stands, in plain words and numbers."""
+        return {
+            "shown": self._settings.method,
+            "by_hand": self._settings.by_hand is not None,
+            "targets": self.targets.tolist(),
+            "dt": self.dt,
+            "gait": in_words(vars(self._settings.gait)),
+            "methods": in_words(self._settings.methods),
+            "options": in_words(self._settings.options),
+            "caps": in_words(self._settings.caps),
+        }
+
+    # Behind it.
+
+    def _begin(self) -> None:
+        self.time = self.phase = self.advance = 0.0
+        self.ticks = self._waited = 0
+        self._stand(np.tile(self.tree.rest, (len(self._settings.methods), 1)))
+        self._retarget()
+        self.history.clear()
+
+    def _stand(self, poses: Array) -> None:
+        """Put the figure of each method into its pose (M, n) [rad]."""
+        poses.setflags(write=False)  # a pose that is changed would no longer be that of the frames
+        self._poses, self.frames = poses, forward(self.tree, poses)
+        self.theta = MappingProxyType(dict(zip(self._settings.methods, poses, strict=True)))
+
+    def _retarget(self) -> None:
+        by_hand = self._settings.by_hand
+        self.targets = self._settings.course.at(self.phase) if by_hand is None else by_hand
+
+    def _event(self, kind: str, what: Mapping[str, Any]) -> Event:
+        return Event(self.runs, self.ticks, self.time, kind, what)
+
+    def _distances(self) -> Array:
+        """Distance of each effector to its target, by each method, (M, k) [m]."""
+        gap = self.targets - locate(self.frames, self.effectors)
+        return np.asarray(np.sqrt(np.vecdot(gap, gap)))
+
+    def _row(self, method: str) -> int:
+        """The row of a method in whatever has a row for each, (M, ...)."""
+        return list(self._settings.methods).index(self._known(method))
+
+    def _known(self, method: str) -> str:
+        if method not in self._settings.methods:
+            raise LookupError(unknown("method", method, self._settings.methods))
+        return method

@@ -1,0 +1,300 @@
+"""The panels that change a session: methods, motion, wounds, speed, and how far targets swing."""
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+from math import log10, pi, radians
+from typing import Any
+
+import numpy as np
+
+from ikteach.arrays import Array
+from ikteach.markup import Markup, plain
+from ikteach.motion.gait import MOTIONS, WOUND, Gait, displayed
+from ikteach.motion.live.session import Session
+from ikteach.motion.mix import Mix
+from ikteach.motion.path import Path
+from ikteach.motion.step import BUSS_CAPS, clip, hold, ignore, per_chain, whole
+from ikteach.names import unknown
+from ikteach.solvers import SOLVERS, Solver
+from ikteach.solvers.sdls import hard, soft
+from ikteach.view.live.panel import (
+    Act,
+    Does,
+    Panel,
+    button,
+    choice,
+    dropdown,
+    log_slider,
+    slider,
+    tick_box,
+)
+from ikteach.view.widgets.prose import Prose
+
+Guard = Callable[[Act], Act]
+OWN, EQUAL, NONE = "each author's own", "equal", "none"
+CLAMPS = {"hard": hard, "soft": soft}
+CAPS = {"whole": whole, "per_chain": per_chain}
+LIMITS = {"hold": hold, "clip": clip, "ignore": ignore}
+BY_HAND = "by hand"
+LABEL: dict[str, Any] = {"label_width": "150px"}
+LOOK: dict[str, Any] = {"width": "380px", **LABEL}
+
+# Option of a solver: label, lowest, highest, whether its slider is logarithmic.
+OPTIONS: Mapping[str, tuple[str, float, float, bool]] = {
+    "gain": ("gain [share of α]", 0.05, 2.0, False),
+    "cutoff": ("cutoff [share of σ_max]", 0.0, 0.5, False),
+    "damping": ("damping λ [m/rad]", 1e-3, 1.0, True),
+    "max_angle": ("γ_max [rad]", 0.05, pi, False),
+}
+# Parameter of the gait: label, lowest, highest, step.
+SLIDERS: Mapping[str, Mapping[str, tuple[str, float, float, float]]] = {
+    "Speed": {
+        "speed": ("speed ω [rad/s]", 0.0, 20.0, 0.1),
+        "step_frequency": ("step frequency [×]", 0.1, 3.0, 0.1),
+        "slowdown": ("slowdown [ticks]", 1, 10, 1),
+    },
+    "Steps": {
+        "back_z_leg": ("left foot z swing [m]", -0.8, 0.8, 0.01),
+        "front_z_leg": ("right foot z swing [m]", -0.8, 0.8, 0.01),
+        "back_y_leg": ("left foot y [m]", -1.3, -0.4, 0.01),
+        "front_y_leg": ("right foot y [m]", -1.3, -0.4, 0.01),
+    },
+    "Hands": {
+        "hand_z": ("hands z swing [m]", -1.2, 1.2, 0.01),
+        "back_y_hand": ("right hand y [m]", -0.6, 1.0, 0.01),
+        "front_y_hand": ("left hand y [m]", -0.6, 1.0, 0.01),
+    },
+}
+
+
+class MethodPanel(Panel):
+    """Which method is shown, the options of each, and the rules around the solver."""
+
+    def __init__(self, session: Session, guard: Guard) -> None:
+        self.session = session
+        options = [
+            {f"{method}.{option}": Does(control, partial(self._set_option, method, option))}
+            for method, solver in SOLVERS.items()
+            for option, control in options_of(solver).items()
+        ]
+        methods = list(SOLVERS)
+        mix = [
+            {f"mix.{name}": Does(dropdown(plain(name), methods, "dls", **LABEL), self._mix)}
+            for name in session.effectors.names
+        ]
+        cap = slider("equal cap [°]", 10.0, 0.5, 90.0, 0.5, **LOOK)
+        max_error = slider("error clamp D [m]", 0.4, 0.01, 1.0, 0.01, **LOOK)
+        around: list[Any] = [
+            {"caps": Does(choice("Step caps", [NONE, EQUAL, OWN], **LABEL), self._bound)},
+            {"cap": Does(cap, self._bound)},
+            {"whose": Does(choice("Cap acts on", list(CAPS), **LABEL), self._cap)},
+            {"limits": Does(choice("Limits", list(LIMITS), **LABEL), self._limits)},
+            {"clamp_error": Does(tick_box("clamp errors"), self._clamp)},
+            {"max_error": Does(max_error, self._clamp)},
+        ]
+        shown = choice("Method", list(session.methods), session.method, label_width="60px")
+        super().__init__(
+            "Method",
+            [{"method": Does(shown, session.show)}],
+            folded={
+                "Options of the methods": options,
+                "Mix: a method per effector": mix,
+                "Around the solver": around,
+            },
+            shows=lambda: {"method": session.method},
+            guard=guard,
+        )
+
+    def _set_option(self, method: str, option: str, value: Any) -> None:
+        bound = getattr(self.session.methods[method], "keywords", {})
+        value = CLAMPS[value] if option == "clamp" else value
+        self.session.use(method, partial(SOLVERS[method], **{**bound, option: value}))
+
+    def _mix(self, _: str) -> None:
+        effectors, values = self.session.effectors, self.values
+        methods = {name: values[f"mix.{name}"] for name in effectors.names}
+        self.session.use("mix", Mix.of(effectors, methods))
+
+    def _bound(self, _: Any) -> None:
+        values, methods = self.values, self.session.methods
+        equal = radians(values["cap"]) if values["caps"] == EQUAL else None
+        self.session.bound(
+            {name: BUSS_CAPS.get(name) for name in methods}
+            if values["caps"] == OWN
+            else dict.fromkeys(methods, equal)
+        )
+
+    def _cap(self, name: str) -> None:
+        self.session.adjust(cap=CAPS[name])
+
+    def _limits(self, name: str) -> None:
+        self.session.adjust(limits=LIMITS[name])
+
+    def _clamp(self, _: Any) -> None:
+        values = self.values
+        self.session.adjust(max_error=values["max_error"] if values["clamp_error"] else None)
+
+
+def options_of(solver: Solver) -> dict[str, Any]:
+    """Make a control for each keyword option of a solver, set to its default."""
+    controls = {}
+    for option in inspect.signature(solver).parameters.values():
+        if option.kind is not option.KEYWORD_ONLY:
+            continue
+        label = f"{getattr(solver, '__name__', 'solver')}: "
+        if option.name == "clamp":
+            controls["clamp"] = choice(f"{label}clamp", list(CLAMPS), **LABEL)
+        elif option.name in OPTIONS:
+            words, low, high, logarithmic = OPTIONS[option.name]
+            value, label = float(option.default), label + words
+            controls[option.name] = (
+                log_slider(label, value, log10(low), log10(high), 0.02, **LOOK)
+                if logarithmic
+                else slider(label, value, low, high, 0.01, **LOOK)
+            )
+        else:
+            raise LookupError(unknown("option with a slider", option.name, OPTIONS))
+    return controls
+
+
+class WoundPanel(Panel):
+    """Wounds, joint by joint, and whether the figure goes anywhere.
+
+    times, plus  (n,) the weights with which the pose is drawn, as the thesis draws a wound
+    """
+
+    def __init__(self, session: Session, guard: Guard) -> None:
+        self.session = session
+        self.times, self.plus = np.ones(len(session.tree)), np.zeros(len(session.tree))
+        joints = dropdown("Joint", list(session.tree.names), "knee.r", **LABEL)
+        mobility = slider("mobility", 1.0, 0.0, 1.0, 0.05, **LOOK)
+        times = slider("drawn × ", 1.0, 0.0, 2.0, 0.05, **LOOK)
+        plus = slider("drawn + [°]", 0.0, -60.0, 60.0, 1.0, **LOOK)
+        explanation = (
+            "<p>A wound as the solver knows it is a <b>mobility</b>. As the thesis draws it, the"
+            " pose is changed after the solve: <b>drawn ×</b> and <b>drawn +</b>.</p>"
+        )
+        super().__init__(
+            "Motion control",
+            [
+                {
+                    "forward": Does(tick_box("moving forward"), self._go),
+                    "wounded": Does(tick_box("wounded"), self._wound),
+                },
+                Prose(Markup(explanation)),
+                {"joint": Does(joints, lambda _: self.agree())},
+                {"mobility": Does(mobility, self._set_mobility)},
+                {"times": Does(times, self._set_times)},
+                {"plus": Does(plus, self._set_plus)},
+                {"heal": Does(button("Heal all"), self._heal)},
+            ],
+            shows=self._stands,
+            guard=guard,
+        )
+
+    def drawn(self, theta: Array) -> Array:
+        """Give poses (..., n) as they are drawn."""
+        return displayed(theta, times=self.times, plus=self.plus)
+
+    @property
+    def _joint(self) -> int:
+        return self.session.tree.index(self.values["joint"])
+
+    def _stands(self) -> dict[str, Any]:
+        gait, joint = self.session.gait, self.values["joint"]
+        return {
+            "forward": gait.forward,
+            "wounded": bool(gait.wound),
+            "mobility": gait.wound.get(joint, 1.0),
+            "times": float(self.times[self._joint]),
+            "plus": float(np.degrees(self.plus[self._joint])),
+        }
+
+    def _go(self, forward: bool) -> None:
+        self.session.change(forward=forward)
+
+    def _wound(self, on: bool) -> None:
+        self.session.change(wound=dict(WOUND) if on else {})
+
+    def _set_mobility(self, value: float) -> None:
+        wound = dict(self.session.gait.wound) | {self.values["joint"]: value}
+        self.session.change(wound={joint: s for joint, s in wound.items() if s < 1})
+
+    def _set_times(self, value: float) -> None:
+        self.times[self._joint] = value
+        self.session.note("drawn", joint=self.values["joint"], value=round(value, 4))
+
+    def _set_plus(self, degrees: float) -> None:
+        self.plus[self._joint] = radians(degrees)
+        self.session.note("drawn", joint=self.values["joint"], value=round(radians(degrees), 4))
+
+    def _heal(self) -> None:
+        self.times[:], self.plus[:] = 1, 0
+        self.session.change(wound={})
+
+
+def motion_panel(session: Session, guard: Guard) -> Panel:
+    """Make the choice of how the targets move."""
+
+    def move(name: str) -> None:
+        session.by_hand = name == BY_HAND
+        if name != BY_HAND:
+            session.gait = as_set(MOTIONS[name], session)
+
+    names = [*MOTIONS, BY_HAND]
+    motion = choice("Motion", names, session.gait.name, label_width="60px")
+    return Panel(
+        "Motion",
+        [{"motion": Does(motion, move)}],
+        shows=lambda: {"motion": BY_HAND if session.by_hand else session.gait.name},
+        guard=guard,
+    )
+
+
+def gait_rows(session: Session, *groups: str, **look: Any) -> list[dict[str, Does]]:
+    """Make a slider for each parameter of these groups that the session's motion has."""
+    return [
+        {
+            name: Does(
+                slider(label, getattr(session.gait, name), *span, **{**LOOK, **look}),
+                lambda value, name=name: session.change(**{name: value}),
+            )
+        }
+        for group in groups
+        for name, (label, *span) in SLIDERS[group].items()
+        if hasattr(session.gait, name)
+    ]
+
+
+def gait_values(session: Session, *groups: str) -> dict[str, Any]:
+    """Give the values that the sliders of `gait_rows` stand for."""
+    names = [name for group in groups for name in SLIDERS[group]]
+    return {name: getattr(session.gait, name) for name in names if hasattr(session.gait, name)}
+
+
+def gait_panel(
+    title: str, session: Session, groups: tuple[str, ...], guard: Guard, *above: Any
+) -> Panel:
+    """Make the sliders of these groups of gait parameters, under other widgets if there are any."""
+    rows = [*above, *gait_rows(session, *groups)]
+    return Panel(title, rows, shows=lambda: gait_values(session, *groups), guard=guard)
+
+
+def motions(session: Session) -> list[str]:
+    """Give the names of the motions that a session's figure can make."""
+    known = list(MOTIONS) if isinstance(session.gait, Gait) else []
+    return known if session.gait.name in known else [*known, session.gait.name]
+
+
+def other_motion(session: Session, name: str, first: Gait | Path) -> Gait | Path:
+    """Give the motion of that name, or the first one, with what is set about the figure."""
+    return as_set(MOTIONS[name] if name in MOTIONS and name != first.name else first, session)
+
+
+def as_set(motion: Gait | Path, session: Session) -> Gait | Path:
+    """Give a motion the wounds of the figure, and have it go forward if it does."""
+    if isinstance(motion, Gait):
+        return replace(motion, forward=session.gait.forward, wound=session.gait.wound)
+    return replace(motion, wound=session.gait.wound)

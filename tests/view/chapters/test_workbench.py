@@ -1,0 +1,96 @@
+"""The workbench without a page: its panels act on the session, and only when a person asks."""
+
+import pytest
+
+from ikteach.motion.step import BUSS_CAPS
+from ikteach.view.chapters.workbench import Workbench
+
+PLACE = [0.6, 0.25, 0.1]
+
+
+@pytest.fixture
+def bench():
+    bench = Workbench(slot=None)
+    yield bench
+    assert bench.status.wrong == ""
+    bench.close()
+
+
+def control(bench, name):
+    return next(p.controls[name] for p in bench.panels.values() if name in p.controls)
+
+
+def drag(bench, count):
+    for i in range(count):
+        at = [PLACE[0], PLACE[1] + 0.001 * i, PLACE[2]]
+        message = {"target": 3, "at": at, "fresh": i == 0, "number": i}
+        bench.targets.handles._hear(None, message, [])
+        if bench.playing:
+            bench.session.tick()
+
+
+def said(bench):
+    return [str(event) for event in bench.session.events]
+
+
+def test_to_open_it_changes_nothing_and_logs_nothing(bench):
+    before = bench.session.settings()
+    for panel in bench.panels.values():  # as a page does with what is between two steps
+        for slider in panel.controls.values():
+            if hasattr(slider, "step") and not hasattr(slider, "base"):
+                steps = round((slider.value - slider.min) / slider.step)
+                slider.value = slider.min + steps * slider.step
+    assert bench.session.settings() == before
+    assert said(bench) == []
+
+
+@pytest.mark.parametrize("playing", [False, True])
+def test_each_drag_is_one_event_and_one_undo(bench, playing):
+    bench.playing = playing
+    walking = bench.session.targets.copy()
+    drag(bench, 60)
+    drag(bench, 60)
+    assert [event.kind for event in bench.session.events] == ["target", "target"]
+    bench.targets._hear(None, {"undo": True}, [])  # the button of the panel
+    assert bench.session.targets[3] == pytest.approx([0.6, 0.309, 0.1])
+    bench.undo()
+    assert not bench.session.by_hand
+    assert bench.panels["Motion"].values == {"motion": "walking"}
+    if not playing:
+        assert bench.session.targets == pytest.approx(walking)
+
+
+def test_a_control_changes_what_it_names(bench):
+    session = bench.session
+    control(bench, "sdls.clamp").value = "soft"  # and not γ_max, which is between two steps
+    control(bench, "mix.hand.l").value = "sdls"
+    control(bench, "caps").value = "each author's own"
+    control(bench, "limits").value = "clip"
+    control(bench, "clamp_error").value = True
+    control(bench, "motion").value = "running"
+    assert session.methods["sdls"].keywords.keys() == {"clamp"}
+    assert {name: session.caps[name] for name in BUSS_CAPS} == BUSS_CAPS
+    assert control(bench, "speed").value == session.gait.speed == 9.0
+    assert said(bench) == [
+        "solver: method sdls, solver {'function': 'sdls', 'clamp': 'soft'}",
+        "solver: method mix, solver {'function': 'mix', 'foot.l': 'dls', 'foot.r': 'dls',"
+        " 'hand.r': 'dls', 'hand.l': 'sdls'}",
+        f"caps: {', '.join(f'{name} {cap}' for name, cap in session.caps.items())}",
+        "options: limits clip",
+        "options: max_error 0.4",
+        "gait: motion running",
+    ]
+
+
+def test_the_picture_keeps_its_settings_when_the_figures_change(bench):
+    control(bench, "dark").value = True
+    control(bench, "layer.ellipsoid").value = True
+    control(bench, "figures").value = "all methods, overlaid"
+    assert bench.scene.dark
+    assert bench.scene.layers["ellipsoid"]
+    bench.draw()
+    control(bench, "zoom").value = 2.0
+    bench.object.ball.azimuth = 10.0
+    assert control(bench, "azimuth").value == 10.0
+    control(bench, "straight").click()
+    assert control(bench, "zoom").value == 1.0
