@@ -26,6 +26,7 @@ COMPUTING = [
 KERNELS, RARER_KERNELS = ["Haswell", "Sandybridge"], ["SkylakeX", "Zen"]
 ROUNDED = ["tests/body", "tests/motion", "tests/solvers", "tests/course/test_prose.py"]
 STYLE = "tests/test_types.py"  # with the newest numpy, pandas, mypy and ruff alone
+NPM = ["npm", "--prefix", "tests/page"]
 TALKING = ["tests/course/test_teaching.py", "tests/test_notebooks.py"]
 Command = Sequence[str]
 
@@ -152,9 +153,11 @@ def lanes(folder: Path, full: bool) -> list[list[list[Part]]]:
         "servers, notebooks, widgets",
         [pytest("--numprocesses", "2", "--dist", "loadfile", *apart, nice=False)],
     )
+    page = Part("JavaScript", [[*NPM, "test"]], needs=[[*NPM, "ci", "--no-audit", "--no-fund"]])
     browser = Part("browser", [pytest("tests/browser", nice=False)])
     beside = [
         Part("computing", [pytest(*COMPUTING, STYLE)]),
+        page,
         *(kernel(name, *(TALKING if full else [])) for name in KERNELS),
         packages(folder, "lowest-direct", no_browser if full else [*COMPUTING, "tests/view"]),
     ]

@@ -1,7 +1,6 @@
 """The widget of a question: it asks, and hands over the answers."""
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Any
 
 import anywidget
@@ -11,7 +10,7 @@ from ikteach.markup import Markup, untouched
 from ikteach.view.widgets import doors
 from ikteach.view.widgets.actor import attempt
 from ikteach.view.widgets.closing import Living, occupant
-from ikteach.view.widgets.esm import esm
+from ikteach.view.widgets.page import script, style
 
 
 class Question(Living, anywidget.AnyWidget):
@@ -21,7 +20,7 @@ class Question(Living, anywidget.AnyWidget):
     second question of the same key closes the first: its cell was run again.
     """
 
-    _esm = esm() + (Path(__file__).parent / "question.js").read_text()
+    _esm, _css = script("course/question.js"), style("course/question.css")
 
     kind = traitlets.Enum(["choice", "number", "ranking"], "choice").tag(sync=True)
     question = traitlets.Unicode().tag(sync=True)

@@ -16,26 +16,7 @@ from pygments.formatters import HtmlFormatter
 from ikteach.markup import Markup
 
 WIDGET = "application/vnd.jupyter.widget-view+json"
-STYLE = """
-:root { color-scheme: light; }
-body { font: 17px/1.55 system-ui, sans-serif; color: #16202a; background: #fff;
-  max-width: 52rem; margin: 0 auto; padding: 1rem 1.2rem 4rem; }
-h1, h2, h3 { line-height: 1.25; margin-top: 1.8em; }
-h1 { margin-top: .6em; }
-a { color: #00548a; }
-nav { display: flex; justify-content: space-between; gap: 1rem; flex-wrap: wrap; }
-img { max-width: 100%; height: auto; }
-blockquote { margin: 1em 0; padding: .3em 1em; border-left: 4px solid #e69f00;
-  background: #fdf6e6; }
-.input { background: #f4f6f8; border-radius: 4px; padding: .1em .9em; margin-top: 1em; }
-.output { margin: .2em 0 1em; overflow-x: auto; }
-pre { font-size: 14px; line-height: 1.4; overflow-x: auto; margin: .6em 0; }
-code { font-size: .92em; }
-table { border-collapse: collapse; font-size: 14px; font-variant-numeric: tabular-nums; }
-td, th { padding: 2px 9px; text-align: right; border-bottom: 1px solid #dde3e8; }
-math[display=block] { margin: 1em 0; font-size: 1.15em; }
-.anchor-link { display: none; }
-"""
+STYLE = (Path(__file__).parent / "pages.css").read_text("utf-8")
 
 
 class MathML(IPythonRenderer):

@@ -286,36 +286,5 @@ def start_page(titles: Mapping[str, str]) -> str:
     """The first page: a link a chapter, and what to know before."""
     row = Markup('<li><a href="lab/index.html?path={}">{}</a></li>\n')
     rows = Markup().join(row.format(name, title) for name, title in titles.items())
-    return START_PAGE.replace("ROWS", rows)
-
-
-START_PAGE = """<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Inverse kinematics</title>
-<!-- JupyterLab looks for this at the root of a site. -->
-<script id="jupyter-config-data" type="application/json" data-jupyter-lite-root=".">{}</script>
-<style>
-body { font: 18px/1.5 system-ui, sans-serif; max-width: 40em; margin: 2em auto; padding: 0 1em;
-  color: #222; background: #fff }
-li { margin: .3em 0 }
-a { color: #005a9c }
-</style>
-</head>
-<body>
-<main>
-<h1>Inverse kinematics you can walk with</h1>
-<p>Choose a chapter, then press <em>Run ▸ Run All Cells</em>.</p>
-<ol start="0">
-ROWS</ol>
-<p>Python runs in this very page. The first start takes half a minute and more; later ones find
-everything in the browser's cache. What you write is kept in this browser, on this machine only:
-<em>File ▸ Download</em> takes a notebook with you.</p>
-<p>Movies are not recorded here, for want of an encoder; sessions are saved and replayed as
-everywhere.</p>
-</main>
-</body>
-</html>
-"""
+    page = (Path(__file__).parent / "start.html").read_text("utf-8")
+    return page.replace("ROWS", rows)

@@ -313,7 +313,7 @@ def test_a_planar_arm_is_dragged_in_its_plane(scene: Notebook) -> None:
 def test_the_output_holds_a_picture_for_places_without_a_kernel(scene: Notebook) -> None:
     bundle = "plane._repr_mimebundle_()"
     assert scene.kernel(f"sorted({bundle})") == [
-        "application/vnd.jupyter.widget-view+json", "image/png", "text/plain",
+        "application/vnd.jupyter.widget-view+json", "image/png", "text/html", "text/plain",
     ]  # fmt: skip
     png = bytes(scene.kernel(f"list({bundle}['image/png'])"))
     assert Image.open(io.BytesIO(png)).size == (540, 480)

@@ -16,7 +16,7 @@ from ikteach.motion.live.session import Session
 from ikteach.view.stage.lengths import Lengths, decade
 from ikteach.view.stage.skin import EFFECTOR_COLOURS
 from ikteach.view.widgets.closing import Living
-from ikteach.view.widgets.esm import esm
+from ikteach.view.widgets.page import script, style
 
 EVERY = 3  # ticks from one message to the next: 10 a second at 30 ticks a second
 SECONDS = 10.0
@@ -31,7 +31,7 @@ class Strips(Living, anywidget.AnyWidget):
     method, and each method's jitter, ‖Δ²θ‖ per tick. Lines differ in dashes as well as in colour.
     """
 
-    _esm = esm("strips")
+    _esm, _css = script("view/live/strips.js"), style("view/live/strips.css")
     panels: Any = traitlets.List().tag(sync=True)
     seconds = traitlets.Float(SECONDS).tag(sync=True)
     alt = traitlets.Unicode("No tick yet.").tag(sync=True)

@@ -11,13 +11,11 @@ from ikteach.motion.live.session import Session
 from ikteach.view.tools.inspector_pages import PAGES, Names, Page
 from ikteach.view.widgets import doors
 from ikteach.view.widgets.cell import Cell
+from ikteach.view.widgets.page import style_tag
 from ikteach.view.widgets.picture import Picture
 from ikteach.view.widgets.prose import Prose, table
 
-STYLE = Markup(
-    "<style>.ikteach-glass td, .ikteach-glass th"
-    "{padding:1px 10px;text-align:right;line-height:1.5}</style>"
-)
+STYLE = style_tag("view/tools/inspector.css")
 
 
 class Glass(Cell):

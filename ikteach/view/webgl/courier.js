@@ -1,43 +1,66 @@
-// What is sent to the kernel while something is dragged: the newest only, at most one message a
-// frame, and no more than a few that the kernel has not yet answered.
+// What is sent to the kernel while something is dragged: the newest only, at most one message per
+// frame, and at most a few that the kernel has not yet answered.
+
+import { listen } from "../widgets/dom.js";
 
 const UNANSWERED = 2;
 const PATIENCE = 1000; // [ms] after which an answer counts as lost
 
-function courier(model) {
-  let waiting = null, number = 0, answered = 0, sentAt = 0, asked = false;
+export class Courier {
+  /** @type {Message | null} */
+  #waiting = null;
+  #number = 0; // of the message sent last
+  #answered = 0; // of the newest message that the kernel has answered
+  #sentAt = 0; // [ms]
+  #asked = false; // for a frame
+  #model;
+  #stop;
 
-  function post() {
-    asked = false;
-    if (!waiting) return;
-    if (number - answered >= UNANSWERED && performance.now() - sentAt < PATIENCE) return soon();
-    sentAt = performance.now();
-    model.send({ ...waiting, number: ++number });
-    waiting = null;
+  /** @param {Model} model */
+  constructor(model) {
+    this.#model = model;
+    this.#stop = listen(model, {
+      "msg:custom": ({ heard = 0 }) => {
+        this.#answered = Math.max(this.#answered, heard);
+      },
+    });
   }
 
-  function soon() {
-    if (!asked) requestAnimationFrame(post);
-    asked = true;
+  /**
+   * Send a message soon. A later one takes its place, but not the sign that a move begins.
+   * @param {Message} message
+   */
+  send(message) {
+    this.#waiting = { ...message, fresh: message.fresh || Boolean(this.#waiting?.fresh) };
+    this.#soon();
   }
 
-  function hear(content) {
-    if (content.heard !== undefined) answered = Math.max(answered, content.heard);
+  /** Send nothing more, and return the message that waited. */
+  drop() {
+    const dropped = this.#waiting;
+    this.#waiting = null;
+    return dropped;
   }
 
-  model.on("msg:custom", hear);
-  return {
-    // A later message takes the place of one that waits, but not the sign that a move begins.
-    send(message) {
-      waiting = { ...message, fresh: message.fresh || Boolean(waiting?.fresh) };
-      soon();
-    },
-    drop() { // and say what will not be sent
-      const dropped = waiting;
-      waiting = null;
-      return dropped;
-    },
-    close() { model.off("msg:custom", hear); waiting = null; },
-  };
+  close() {
+    this.#stop();
+    this.drop();
+  }
+
+  #soon() {
+    if (!this.#asked) requestAnimationFrame(() => this.#post());
+    this.#asked = true;
+  }
+
+  #post() {
+    this.#asked = false;
+    if (!this.#waiting) return;
+    const now = performance.now();
+    if (this.#number - this.#answered >= UNANSWERED && now - this.#sentAt < PATIENCE) {
+      this.#soon();
+      return;
+    }
+    this.#sentAt = now;
+    this.#model.send({ ...this.drop(), number: ++this.#number });
+  }
 }
-

@@ -1,141 +1,154 @@
 // Writes poses into the three.js objects that pythreejs has made.
 //
-// One binary message is one frame: rows of 12 float32, the columns x, y, z and position of a
-// matrix. A row moves an object as a whole, or some of the points of a mesh of many parts. The
-// browser says which frames it has drawn, so that the kernel never sends far ahead; what comes
-// faster than it can be drawn is overwritten by what is newer.
+// One binary message is one frame: rows of 12 float32 (see movers.js). The browser says which
+// frames it has drawn, so that the kernel never sends far ahead; what comes faster than it can be
+// drawn is overwritten by what is newer.
+
+import { floats } from "../widgets/binary.js";
+import { element, listen } from "../widgets/dom.js";
+import { complain, guarded } from "../widgets/guarded.js";
+import { resolve } from "../widgets/models.js";
+import { parts, whole } from "./movers.js";
+import { Pictures } from "./pictures.js";
+import { hasWebGL, sceneOf } from "./scene.js";
+
+/** @import { Scene } from "./scene.js" */
 
 const REPORT_EVERY = 15; // frames; each report makes the kernel busy and idle, and the page says so
 const LATE = 5000; // [ms] after which a figure that is not there counts as missing
 
-// Two kinds of movers: (numbers of the frame) => what they say is done.
+export class Driver {
+  #gone = false;
+  /** @type {Scene | undefined} */
+  #scene;
+  /** @type {Mover[]} */
+  #movers = [];
+  #rows = -1; // that a frame for these movers has
+  #gathering = 0;
+  /** @type {Frame | null} */
+  #newest = null; // in the scene, and not yet on the screen
+  #reported = -1; // number of the newest frame of which the kernel knows that it was drawn
+  #shown = 0;
+  #stopDrawn = () => {};
+  #given;
+  #model;
+  #status;
+  #still;
 
-function whole(object, row) {
-  return (numbers) => {
-    const [ax, ay, az, bx, by, bz, cx, cy, cz, px, py, pz] = numbers.subarray(12 * row, 12 * row + 12);
-    object.matrix.set(ax, bx, cx, px, ay, by, cy, py, az, bz, cz, pz, 0, 0, 0, 1);
-    object.matrixWorldNeedsUpdate = true;
-  };
-}
-
-function parts(object, runs) {
-  const { position, normal } = object.geometry.attributes;
-  for (const one of [position, normal]) if (one) one.rest = one.rest ?? one.array.slice();
-  return (numbers) => {
-    let from = 0;
-    for (const [row, count] of runs) {
-      const matrix = numbers.subarray(12 * row, 12 * row + 12), to = from + 3 * count;
-      carry(position, matrix, from, to);
-      if (normal) carry(normal, upright(matrix), from, to);
-      from = to;
-    }
-    position.needsUpdate = true;
-    if (normal) normal.needsUpdate = true;
-    object.visible = true;
-  };
-}
-
-function carry({ rest, array }, [ax, ay, az, bx, by, bz, cx, cy, cz, px, py, pz], from, to) {
-  for (let i = from; i < to; i += 3) {
-    const x = rest[i], y = rest[i + 1], z = rest[i + 2];
-    array[i] = ax * x + bx * y + cx * z + px;
-    array[i + 1] = ay * x + by * y + cy * z + py;
-    array[i + 2] = az * x + bz * y + cz * z + pz;
+  /**
+   * @param {Given} given
+   * @param {HTMLElement} status says what the picture shows
+   * @param {Pictures} still stands in while there is no figure
+   */
+  constructor(given, status, still) {
+    this.#given = given;
+    this.#model = given.model;
+    this.#status = status;
+    this.#still = still;
   }
-}
 
-function upright(matrix) { // how normals turn, where R stretches along its columns: R (RᵀR)⁻¹
-  const turned = new Float32Array(12);
-  for (let i = 0; i < 9; i += 3) {
-    const [x, y, z] = matrix.subarray(i, i + 3), square = x * x + y * y + z * z;
-    turned.set([x / square, y / square, z / square], i);
-  }
-  return turned;
-}
-
-function render(given) {
-  const { model, el } = given;
-  const status = document.createElement("p");
-  status.className = "ikteach-driver";
-  status.setAttribute("role", "img");
-  el.appendChild(status);
-
-  const still = pictures(given); // for as long as there is no figure
-  let gone = false;
-  let renderer = null, scene = null;
-  let movers = [], rows = -1; // what to move, and how many rows a frame for it has
-  let gathering = 0;
-  let newest = null; // the frame that is in the scene and not yet on the screen
-  let reported = -1; // number of the newest frame that the kernel has been told of
-  let shown = 0;
-
-  async function begin() {
-    if (!hasWebGL()) return without("webgl");
-    const late = setTimeout(() => without("pythreejs"), LATE);
-    const found = await sceneOf(given, () => gone);
+  /** Wait for the scene of pythreejs; pictures stand in until it comes, if that takes long. */
+  async begin() {
+    if (!hasWebGL()) return this.#without("webgl");
+    const late = setTimeout(() => this.#without("pythreejs"), LATE);
+    const scene = await sceneOf(this.#given, () => this.#gone);
     clearTimeout(late);
-    if (gone) return;
-    ({ renderer, scene } = found);
-    still.stop();
-    scene.on("afterRender", drawn);
-    await gather();
+    if (this.#gone || !scene) return;
+    this.#scene = scene;
+    this.#still.stop();
+    this.#stopDrawn = listen(scene.model, { afterRender: () => this.#drawn() });
+    await this.gather();
   }
 
-  function without(cause) {
-    if (gone) return;
-    still.start(cause);
-    hello();
+  end() {
+    this.#gone = true;
+    this.#still.stop();
+    this.#stopDrawn();
   }
 
-  async function gather() {
-    if (!scene) return;
-    const turn = ++gathering, plan = model.get("plan");
+  /** Ask the kernel for the newest frame, in a page that is looked at. */
+  hello() {
+    if (!document.hidden) this.#model.send({ hello: true });
+  }
+
+  /** Take the objects that the kernel wants moved. */
+  async gather() {
+    if (!this.#scene) return;
+    const turn = ++this.#gathering;
+    const plan = this.#model.get("plan");
     let nodes;
     try {
-      nodes = await resolve(given, model.get("nodes"));
+      nodes = await resolve(this.#given, this.#model.get("nodes"));
     } catch {
       return; // the scene was closed meanwhile, and what it moved has gone
     }
-    if (turn !== gathering || plan.length !== nodes.length) return; // there is news already
-    movers = plan.map((one, i) => (Array.isArray(one) ? parts : whole)(nodes[i].obj, one));
-    rows = model.get("rows");
-    hello();
+    if (turn !== this.#gathering || plan.length !== nodes.length) return; // there is news already
+    this.#movers = nodes.map(({ obj }, i) =>
+      Array.isArray(plan[i]) ? parts(obj, plan[i]) : whole(obj, plan[i]),
+    );
+    this.#rows = this.#model.get("rows");
+    this.hello();
   }
 
-  function receive(content, [bytes] = []) {
-    if (content.wrong !== undefined) throw new Error(content.wrong);
-    if (content.picture !== undefined) {
-      still.put(content.picture, bytes);
-      if (still.on) say(content.picture, content.change);
-    } else if (content.frame !== undefined && still.on) {
+  /**
+   * Take a message of the kernel: a frame, or a picture for want of a scene.
+   * @param {Partial<Frame> & { picture?: number, wrong?: string }} content
+   * @param {DataView[]} [buffers]
+   */
+  receive({ wrong, picture, frame, change = 0 }, [bytes] = []) {
+    if (wrong !== undefined) throw new Error(wrong);
+    if (picture !== undefined) {
+      this.#still.put(picture, bytes);
+      if (this.#still.on) this.#say(picture, change);
+    } else if (frame !== undefined && this.#still.on) {
       if (document.hidden) return;
-      still.follow(content.frame);
-      report(content.frame);
-    } else if (content.frame !== undefined && bytes?.byteLength === 48 * rows) {
+      this.#still.follow(frame);
+      this.#report(frame);
+    } else if (frame !== undefined && bytes?.byteLength === 48 * this.#rows) {
       const numbers = floats(bytes);
-      for (const move of movers) move(numbers);
-      newest = content;
-      renderer.trigger("rerender", renderer, {});
+      for (const move of this.#movers) move(numbers);
+      this.#newest = { frame, change };
+      this.#scene?.redraw();
     }
   }
 
-  function drawn() {
-    if (!newest) return;
-    const { frame, change } = newest;
-    newest = null;
-    say(frame, change);
-    report(frame);
+  /** @param {"webgl" | "pythreejs"} cause */
+  #without(cause) {
+    if (this.#gone) return;
+    this.#still.start(this.#model.get("lacking")[cause]);
+    this.hello();
   }
 
-  function say(frame, change) {
-    Object.assign(status.dataset, { frame, change, shown: ++shown });
+  #drawn() {
+    if (!this.#newest) return;
+    const { frame, change } = this.#newest;
+    this.#newest = null;
+    this.#say(frame, change);
+    this.#report(frame);
   }
 
-  function report(frame) {
-    if (frame - reported < REPORT_EVERY) return;
-    reported = frame;
-    model.send({ drawn: frame });
+  /**
+   * @param {number} frame
+   * @param {number} change
+   */
+  #say(frame, change) {
+    Object.assign(this.#status.dataset, { frame, change, shown: ++this.#shown });
   }
+
+  /** @param {number} frame */
+  #report(frame) {
+    if (frame - this.#reported < REPORT_EVERY) return;
+    this.#reported = frame;
+    this.#model.send({ drawn: frame });
+  }
+}
+
+/** @type {Render} */
+function render(given) {
+  const { model, el } = given;
+  const status = element("p", { class: "ikteach-driver", role: "img" });
+  el.append(status);
+  const driver = new Driver(given, status, new Pictures(el, () => model.send({ picture: true })));
 
   function describe() {
     const words = model.get("description");
@@ -143,23 +156,20 @@ function render(given) {
     status.setAttribute("aria-label", words);
   }
 
-  const hello = () => !document.hidden && model.send({ hello: true });
-  model.on("msg:custom", receive);
-  model.on("change:plan", gather);
-  model.on("change:description", describe);
+  const hello = () => driver.hello();
+  const stop = listen(model, {
+    "msg:custom": (content, buffers) => driver.receive(content, buffers),
+    "change:plan": () => driver.gather(),
+    "change:description": describe,
+  });
   document.addEventListener("visibilitychange", hello);
   describe();
-  begin().catch((error) => complain(el, error));
-
+  driver.begin().catch((error) => complain(el, error));
   return () => {
-    gone = true;
-    still.stop();
-    model.off("msg:custom", receive);
-    model.off("change:plan", gather);
-    model.off("change:description", describe);
-    scene?.off("afterRender", drawn);
+    stop();
+    driver.end();
     document.removeEventListener("visibilitychange", hello);
   };
 }
 
-export default { render: told(render) };
+export default { render: guarded(render) };

@@ -11,8 +11,8 @@ from ipywidgets import Widget, widget_serialization
 from ikteach.arrays import Array
 from ikteach.view.widgets.actor import Actor
 from ikteach.view.widgets.closing import Living
-from ikteach.view.widgets.esm import esm
 from ikteach.view.widgets.lacking import LACKING
+from ikteach.view.widgets.page import script, style
 
 Move = tuple[Widget, int | list[list[int]]]
 """What is moved, and by which row of a frame; or, of a mesh, [row, points] of each of its parts."""
@@ -33,7 +33,7 @@ class Driver(Living, anywidget.AnyWidget):
     as_png        draws what was shown last, for a page that lacks pythreejs or WebGL
     """
 
-    _esm = esm("pictures", "driver")
+    _esm, _css = script("view/webgl/driver.js"), style("view/webgl/driver.css")
     renderer = traitlets.Instance(Widget).tag(sync=True, **widget_serialization)
     nodes = traitlets.List(traitlets.Instance(Widget)).tag(sync=True, **widget_serialization)
     plan: Any = traitlets.List().tag(sync=True)

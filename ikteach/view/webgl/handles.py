@@ -12,7 +12,7 @@ from ikteach.view.webgl.positions import Positions
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets.actor import Actor, in_words
 from ikteach.view.widgets.closing import Living
-from ikteach.view.widgets.esm import esm
+from ikteach.view.widgets.page import script, style
 
 STEP = 0.05  # [m] one press of an arrow key, on a figure of a human's size
 
@@ -31,7 +31,7 @@ class Handles(Living, anywidget.AnyWidget):
     """
 
     foreign = frozenset({"renderer", "nodes"})  # the scene's
-    _esm = esm("courier", "handles")
+    _esm, _css = script("view/webgl/handles.js"), style("view/webgl/handles.css")
     renderer = traitlets.Instance(Widget).tag(sync=True, **widget_serialization)
     halo = traitlets.Instance(Widget).tag(sync=True, **widget_serialization)
     nodes = traitlets.List(traitlets.Instance(Widget)).tag(sync=True, **widget_serialization)

@@ -1,70 +1,91 @@
 // What is seen where the figure cannot live: why, and pictures that the kernel draws. The page asks
 // for one when there is news, and leaves the kernel half of its time for everything else.
 
+import { showPNG } from "../widgets/binary.js";
+import { element } from "../widgets/dom.js";
+
 const PAUSE = 250; // [ms] at least, from a picture to the next question
 const LOST = 10_000; // [ms] after which an answer counts as lost
 
-function pictures({ model, el }) {
-  let box = null, image = null, url = null;
-  let news = -1, seen = -1; // numbers of frames
-  let asked = null, pause = null; // when, and what ends the waiting
+export class Pictures {
+  #image = element("img", { alt: "" }); // the words under it say what it shows
+  /** @type {HTMLElement | null} */
+  #box = null;
+  #news = -1; // number of the newest frame
+  #seen = -1; // number of the frame in the picture
+  /** @type {number | null} */
+  #asked = null; // when [ms], while an answer or the pause after it is waited for
+  /** @type {Timer} */
+  #pause;
+  #el;
+  #ask;
 
-  function start(cause) {
-    if (box) return;
-    box = document.createElement("div");
-    box.className = "ikteach-pictures";
-    const style = document.createElement("style"), words = document.createElement("p");
-    style.textContent = // in place of what pythreejs shows of its own failure
-      `.ikteach-scene:has(.ikteach-pictures) > :first-child { display: none; }
-       .ikteach-pictures > p { border-left: 4px solid #d55e00; padding: 4px 10px; margin: 4px 0; }`;
-    words.setAttribute("role", "alert");
-    words.textContent = model.get("lacking")[cause];
-    image = document.createElement("img");
-    image.alt = ""; // the words under it say what it shows
-    image.style.maxWidth = "100%";
-    box.append(style, words, image);
-    el.prepend(box);
+  /**
+   * @param {HTMLElement} el where to be shown
+   * @param {() => void} ask asks the kernel for a picture
+   */
+  constructor(el, ask) {
+    this.#el = el;
+    this.#ask = ask;
   }
 
-  function stop() {
-    clearTimeout(pause);
-    if (url) URL.revokeObjectURL(url);
-    box?.remove();
-    box = url = asked = null;
+  /** Whether pictures are shown. */
+  get on() {
+    return this.#box !== null;
   }
 
-  function follow(frame) {
-    news = frame;
-    ask();
+  /**
+   * Show pictures from now on, and why.
+   * @param {string} why
+   */
+  start(why) {
+    if (this.#box) return;
+    const words = element("p", { role: "alert" }, why);
+    this.#box = element("div", { class: "ikteach-pictures" }, words, this.#image);
+    this.#el.prepend(this.#box);
   }
 
-  function ask() {
-    if (!box || asked !== null || news === seen) return;
-    asked = performance.now();
-    pause = setTimeout(again, LOST);
-    model.send({ picture: true });
+  stop() {
+    clearTimeout(this.#pause);
+    showPNG(this.#image);
+    this.#box?.remove();
+    this.#box = this.#asked = null;
   }
 
-  function again() {
-    asked = null;
-    ask();
+  /**
+   * Ask for a picture of this frame, as soon as it is time.
+   * @param {number} frame
+   */
+  follow(frame) {
+    this.#news = frame;
+    this.#askForNews();
   }
 
-  function put(frame, png) {
-    if (!box || asked === null) return; // another page has asked
-    seen = frame;
-    if (url) URL.revokeObjectURL(url);
-    url = image.src = URL.createObjectURL(new Blob([png], { type: "image/png" }));
-    clearTimeout(pause);
-    pause = setTimeout(again, Math.max(PAUSE, performance.now() - asked));
+  /**
+   * Show the picture of a frame, if this page has asked for it and not another.
+   * @param {number} frame
+   * @param {DataView} png
+   */
+  put(frame, png) {
+    if (!this.#box || this.#asked === null) return;
+    this.#seen = frame;
+    showPNG(this.#image, png);
+    this.#wait(Math.max(PAUSE, performance.now() - this.#asked));
   }
 
-  return { start, stop, follow, put, get on() { return box !== null; } };
+  #askForNews() {
+    if (!this.#box || this.#asked !== null || this.#news === this.#seen) return;
+    this.#asked = performance.now();
+    this.#wait(LOST);
+    this.#ask();
+  }
+
+  /** @param {number} time [ms] until the next question may be asked */
+  #wait(time) {
+    clearTimeout(this.#pause);
+    this.#pause = setTimeout(() => {
+      this.#asked = null;
+      this.#askForNews();
+    }, time);
+  }
 }
-
-function hasWebGL() {
-  const gl = document.createElement("canvas").getContext("webgl");
-  gl?.getExtension("WEBGL_lose_context")?.loseContext(); // a page may have few
-  return gl !== null;
-}
-

@@ -1,97 +1,136 @@
 // A slider and a number box for each coordinate of each target, and a button that takes back.
 
-const STYLE = `
-.ikteach-targets { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-.ikteach-targets th { text-align: left; padding: 2px 6px 2px 2px; white-space: nowrap; font-weight: normal; }
-.ikteach-targets td { padding: 2px 3px; white-space: nowrap; }
-.ikteach-targets input[type=range] { width: 4em; vertical-align: middle; }
-.ikteach-targets input[type=number] { width: 4.4em; }
-.ikteach-targets input:focus-visible, .ikteach-undo:focus-visible { outline: 3px solid #56b4e9; }
-.ikteach-alert:not(:empty) { border-left: 4px solid #d55e00; padding: 4px 10px; margin: 4px 0; }`;
+import { element, listen, OWN_KEYS } from "../widgets/dom.js";
+import { guarded } from "../widgets/guarded.js";
+import { Courier } from "./courier.js";
 
-function element(name, parent, attributes = {}, text = "") {
-  const made = document.createElement(name);
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
-  made.textContent = text;
-  parent.appendChild(made);
-  return made;
-}
+const HEADINGS = ["x, left", "y, up", "z, forward"];
 
+/** @type {Render} */
 function render({ model, el }) {
-  element("style", el, {}, STYLE);
-  const names = model.get("names"), low = model.get("low"), high = model.get("high");
-  const unit = model.get("unit"), metres = model.get("metres"), digits = model.get("digits");
-  const table = element("table", el, { class: "ikteach-targets" });
-  const head = element("tr", table);
-  for (const title of [`target [${unit}]`, "x, left", "y, up", "z, forward"])
-    element("th", head, { scope: "col" }, title);
-  const post = courier(model);
-  const pairs = names.map((name, target) => {
-    const row = element("tr", table);
-    const title = element("th", row, { scope: "row" });
-    const mark = element("span", title, { "aria-hidden": "true" },
-      name.endsWith(".r") ? "■ " : "● ");
-    mark.style.color = model.get("colours")[target];
-    title.append(name);
-    return [..."xyz"].map((letter, axis) => pair(row, target, axis, `${name} ${letter}`));
-  });
-  const button = element("button", el,
-    { class: "ikteach-undo jupyter-button", type: "button" }, "Undo move");
-  const alert = element("p", el, { class: "ikteach-alert", role: "alert" });
-
-  function pair(row, target, axis, name) {
-    const cell = element("td", row);
-    const common = { min: low[target][axis] / metres, max: high[target][axis] / metres,
-                     step: model.get("step"),
-                     "data-lm-suppress-shortcuts": "true" };
-    const slider = element("input", cell, { type: "range", "aria-label": `${name} slider`, ...common });
-    const box = element("input", cell, { type: "number", "aria-label": name, ...common });
-    if (common.min === common.max) slider.disabled = box.disabled = true;
-    slider.addEventListener("input", () => { // one move until the slider is let go
-      post.send({ target, axis, value: slider.valueAsNumber * metres, fresh: !slider.dataset.held });
-      slider.dataset.held = "true";
-    });
-    slider.addEventListener("change", () => { delete slider.dataset.held; });
-    box.addEventListener("input", () => { box.dataset.typing = "true"; });
-    const commit = () => {
-      if (!box.dataset.typing) return;
-      delete box.dataset.typing;
-      const value = Number.isFinite(box.valueAsNumber) ? box.valueAsNumber * metres : null;
-      model.send({ target, axis, value, typed: true });
-    };
-    box.addEventListener("change", commit);
-    box.addEventListener("keydown", (event) => { // the notebook keeps Enter from making a change
-      if (event.key !== "Enter") return;
-      commit();
-      event.stopPropagation();
-    });
-    return { slider, box };
-  }
+  const post = new Courier(model);
+  /** @type {string[]} */
+  const names = model.get("names");
+  const pairs = names.map((name, target) =>
+    [..."xyz"].map((letter, axis) => new Pair(model, post, target, axis, `${name} ${letter}`)),
+  );
+  const rows = names.map((name, target) =>
+    makeRow(name, model.get("colours")[target], pairs[target]),
+  );
+  const headings = [`target [${model.get("unit")}]`, ...HEADINGS];
+  const head = headings.map((title) => element("th", { scope: "col" }, title));
+  const attributes = { class: "ikteach-undo jupyter-button", type: "button" };
+  const button = element("button", attributes, "Undo move");
+  const alert = element("p", { class: "ikteach-alert", role: "alert" });
+  const table = element("table", { class: "ikteach-targets" }, element("tr", {}, ...head), ...rows);
+  el.append(table, button, alert);
 
   function show() {
-    const values = model.get("values");
-    pairs.forEach((row, target) => row.forEach(({ slider, box }, axis) => {
-      const value = values[target][axis] / metres;
-      if (!slider.dataset.held) slider.value = value;
-      slider.setAttribute("aria-valuetext", `${value.toFixed(digits)} ${unit}`);
-      if (!box.dataset.typing) box.value = value.toFixed(digits);
-    }));
+    for (const pair of pairs.flat()) pair.show();
   }
-
-  function complain() { alert.textContent = model.get("alert"); }
-  function heard(content) { if (content.again) show(); }
+  function warn() {
+    alert.textContent = model.get("alert");
+  }
   button.addEventListener("click", () => model.send({ undo: true }));
-  model.on("change:values", show);
-  model.on("change:alert", complain);
-  model.on("msg:custom", heard);
+  const stop = listen(model, {
+    "change:values": show,
+    "change:alert": warn,
+    "msg:custom": ({ again }) => again && show(),
+  });
   show();
-  complain();
+  warn();
   return () => {
     post.close();
-    model.off("change:values", show);
-    model.off("change:alert", complain);
-    model.off("msg:custom", heard);
+    stop();
   };
 }
 
-export default { render: told(render) };
+/** A slider and a number box for one coordinate. */
+class Pair {
+  #model;
+  #post;
+  #target;
+  #axis;
+
+  /**
+   * @param {Model} model
+   * @param {Courier} post
+   * @param {number} target
+   * @param {number} axis
+   * @param {string} name
+   */
+  constructor(model, post, target, axis, name) {
+    this.#model = model;
+    this.#post = post;
+    this.#target = target;
+    this.#axis = axis;
+    const [min, max] = ["low", "high"].map((end) => this.#shown(end));
+    const common = { ...OWN_KEYS, min, max, step: model.get("step") };
+    this.slider = element("input", { ...common, type: "range", "aria-label": `${name} slider` });
+    this.box = element("input", { ...common, type: "number", "aria-label": name });
+    this.slider.disabled = this.box.disabled = min === max;
+    this.slider.addEventListener("input", () => this.#slide());
+    this.slider.addEventListener("change", () => delete this.slider.dataset.held);
+    this.box.addEventListener("input", () => {
+      this.box.dataset.typing = "true";
+    });
+    this.box.addEventListener("change", () => this.#commit());
+    this.box.addEventListener("keydown", (event) => {
+      if (event.key !== "Enter") return;
+      this.#commit();
+      event.stopPropagation(); // the notebook would keep Enter from making a change
+    });
+  }
+
+  /** Show where the target is, unless a person is about to say where. */
+  show() {
+    const value = this.#shown("values");
+    const words = value.toFixed(this.#model.get("digits"));
+    if (!this.slider.dataset.held) this.slider.value = `${value}`;
+    this.slider.setAttribute("aria-valuetext", `${words} ${this.#model.get("unit")}`);
+    if (!this.box.dataset.typing) this.box.value = words;
+  }
+
+  /**
+   * Its coordinate of `values`, `low` or `high`, in the unit that is shown.
+   * @param {string} trait
+   * @returns {number}
+   */
+  #shown(trait) {
+    return this.#model.get(trait)[this.#target][this.#axis] / this.#model.get("metres");
+  }
+
+  /** One move until the slider is let go. */
+  #slide() {
+    const { slider } = this;
+    this.#post.send({
+      target: this.#target,
+      axis: this.#axis,
+      value: slider.valueAsNumber * this.#model.get("metres"),
+      fresh: !slider.dataset.held,
+    });
+    slider.dataset.held = "true";
+  }
+
+  #commit() {
+    const { dataset, valueAsNumber } = this.box;
+    if (!dataset.typing) return;
+    delete dataset.typing;
+    const value = Number.isFinite(valueAsNumber) ? valueAsNumber * this.#model.get("metres") : null;
+    this.#model.send({ target: this.#target, axis: this.#axis, value, typed: true });
+  }
+}
+
+/**
+ * @param {string} name
+ * @param {string} colour
+ * @param {Pair[]} pairs
+ */
+function makeRow(name, colour, pairs) {
+  const mark = element("span", { "aria-hidden": true }, name.endsWith(".r") ? "■ " : "● ");
+  mark.style.color = colour;
+  const cells = pairs.map(({ slider, box }) => element("td", {}, slider, box));
+  return element("tr", {}, element("th", { scope: "row" }, mark, name), ...cells);
+}
+
+export default { render: guarded(render) };

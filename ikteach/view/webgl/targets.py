@@ -18,7 +18,7 @@ from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import doors
 from ikteach.view.widgets.actor import Actor, in_words
 from ikteach.view.widgets.closing import Living
-from ikteach.view.widgets.esm import esm
+from ikteach.view.widgets.page import script, style
 
 ROOM = 1.5  # [m] how far a target of a human may go from where it starts, each way
 
@@ -38,7 +38,7 @@ class Targets(Living, anywidget.AnyWidget):
     number boxes, by `move`.
     """
 
-    _esm = esm("courier", "targets")
+    _esm, _css = script("view/webgl/targets.js"), style("view/webgl/targets.css")
     names = traitlets.List(traitlets.Unicode()).tag(sync=True)
     colours = traitlets.List(traitlets.Unicode()).tag(sync=True)
     low: Any = traitlets.List().tag(sync=True)

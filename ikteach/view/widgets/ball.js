@@ -1,89 +1,89 @@
-// A wire globe in SVG. It is a slider of two dimensions: drag it, or use the arrow keys.
+// A slider of two dimensions: drag the globe, or use the arrow keys.
 
-const R = 54, STEP = 5; // [pixels], [degrees]
+import { clamp } from "./choosing.js";
+import { listen, OWN_KEYS, set, svg, take } from "./dom.js";
+import { globe, RADIUS } from "./globe.js";
+import { guarded } from "./guarded.js";
+
+const STEP = 5; // [degrees] per key press; 1 with Shift
+/** @type {Record<string, number[]>} */
 const KEYS = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-const SVG = "http://www.w3.org/2000/svg";
 
-function svg(name, attributes, words = "") {
-  const made = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
-  made.textContent = words;
-  return made;
-}
-
+/** @type {Render} */
 function render({ model, el }) {
-  const ball = svg("svg", {
-    width: 2 * R + 12, height: 2 * R + 12, viewBox: `${-R - 6} ${-R - 6} ${2 * R + 12} ${2 * R + 12}`,
-    tabindex: 0, role: "slider", class: "ikteach-ball", "data-lm-suppress-shortcuts": "true",
-    "aria-valuemin": -180, "aria-valuemax": 180,
-    style: "touch-action:none;cursor:grab", "aria-label": model.get("label"),
-  });
-  el.appendChild(ball);
-  let held = null;
-
-  function turn(azimuth, elevation) {
-    model.set("azimuth", ((azimuth + 540) % 360) - 180);
-    model.set("elevation", Math.max(-85, Math.min(85, elevation)));
-    model.save_changes();
-  }
+  const ball = makeBall(model.get("label"));
+  el.append(ball);
 
   function draw() {
-    const a = (model.get("azimuth") * Math.PI) / 180, e = (model.get("elevation") * Math.PI) / 180;
-    const view = (x, y, z) => { // the camera goes round: the globe turns the other way
-      const right = x * Math.cos(a) - z * Math.sin(a), toward = x * Math.sin(a) + z * Math.cos(a);
-      return [right * R, -(y * Math.cos(e) - toward * Math.sin(e)) * R, toward * Math.cos(e) + y * Math.sin(e)];
-    };
-    const circle = (at) => {
-      let path = "", up = false;
-      for (let i = 0; i <= 48; i++) {
-        const [x, y, depth] = view(...at((i * Math.PI) / 24));
-        path += depth < 0 ? "" : `${up ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`;
-        up = depth >= 0;
-      }
-      return svg("path", { d: path, fill: "none", stroke: "currentColor", "stroke-opacity": 0.5 });
-    };
-    const lines = [-60, -30, 0, 30, 60].map((degrees) => {
-      const b = (degrees * Math.PI) / 180;
-      return circle((t) => [Math.cos(b) * Math.sin(t), Math.sin(b), Math.cos(b) * Math.cos(t)]);
+    const azimuth = model.get("azimuth");
+    const elevation = model.get("elevation");
+    ball.replaceChildren(...globe(azimuth, elevation));
+    const left = `${Math.round(azimuth)}° to the left of the front`;
+    set(ball, {
+      "aria-valuenow": Math.round(azimuth),
+      "aria-valuetext": `${left}, ${Math.round(elevation)}° up`,
     });
-    for (let m = 0; m < 6; m++) {
-      const b = (m * Math.PI) / 6;
-      lines.push(circle((t) => [Math.sin(b) * Math.cos(t), Math.sin(t), Math.cos(b) * Math.cos(t)]));
-    }
-    const [x, y, depth] = view(0, 0, 1);
-    const front = depth < 0 ? [] : [
-      svg("circle", { cx: x, cy: y, r: 6, fill: "#d55e00" }),
-      svg("text", { x: x + 8, y: y + 4, "font-size": 11, fill: "currentColor" }, "front"),
-    ];
-    const rim = { r: R, fill: "#56b4e9", "fill-opacity": 0.2, stroke: "currentColor" };
-    ball.replaceChildren(svg("circle", rim), ...lines, ...front);
-    const words = `${Math.round(model.get("azimuth"))}° to the left of the front, ` +
-      `${Math.round(model.get("elevation"))}° up`;
-    ball.setAttribute("aria-valuenow", Math.round(model.get("azimuth")));
-    ball.setAttribute("aria-valuetext", words);
   }
 
-  ball.addEventListener("pointerdown", (event) => {
-    ball.setPointerCapture(event.pointerId);
-    held = { x: event.clientX, y: event.clientY, a: model.get("azimuth"), e: model.get("elevation") };
-  });
-  ball.addEventListener("pointermove", (event) => {
-    if (!held) return;
-    turn(held.a - (event.clientX - held.x), held.e + (event.clientY - held.y));
-  });
-  for (const name of ["pointerup", "pointercancel"])
-    ball.addEventListener(name, () => { held = null; });
+  drag(ball, model);
   ball.addEventListener("keydown", (event) => {
     const move = KEYS[event.key];
     if (!move) return;
-    event.preventDefault();
-    event.stopPropagation();
+    take(event);
     const step = event.shiftKey ? 1 : STEP;
-    turn(model.get("azimuth") + step * move[0], model.get("elevation") + step * move[1]);
+    turn(model, model.get("azimuth") + step * move[0], model.get("elevation") + step * move[1]);
   });
-  model.on("change", draw);
   draw();
-  return () => model.off("change", draw);
+  return listen(model, { change: draw });
 }
 
-export default { render: told(render) };
+/** @param {string} label */
+function makeBall(label) {
+  const size = 2 * RADIUS + 12;
+  return svg("svg", {
+    ...OWN_KEYS,
+    class: "ikteach-ball",
+    role: "slider",
+    tabindex: 0,
+    width: size,
+    height: size,
+    viewBox: `${-size / 2} ${-size / 2} ${size} ${size}`,
+    "aria-label": label,
+    "aria-valuemin": -180,
+    "aria-valuemax": 180,
+  });
+}
+
+/**
+ * Let the pointer turn the ball, a degree per pixel.
+ * @param {SVGElement} ball
+ * @param {Model} model
+ */
+function drag(ball, model) {
+  /** @type {number[] | null} */
+  let held = null; // azimuth + x and elevation − y, which stay while the ball is dragged
+  ball.addEventListener("pointerdown", (event) => {
+    ball.setPointerCapture(event.pointerId);
+    held = [model.get("azimuth") + event.clientX, model.get("elevation") - event.clientY];
+  });
+  ball.addEventListener("pointermove", (event) => {
+    if (held) turn(model, held[0] - event.clientX, held[1] + event.clientY);
+  });
+  for (const name of ["pointerup", "pointercancel"])
+    ball.addEventListener(name, () => {
+      held = null;
+    });
+}
+
+/**
+ * @param {Model} model
+ * @param {number} azimuth [degrees]
+ * @param {number} elevation [degrees]
+ */
+function turn(model, azimuth, elevation) {
+  model.set("azimuth", ((azimuth + 540) % 360) - 180);
+  model.set("elevation", clamp(elevation, -85, 85));
+  model.save_changes();
+}
+
+export default { render: guarded(render) };

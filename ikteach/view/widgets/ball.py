@@ -4,7 +4,7 @@ import anywidget
 import traitlets
 
 from ikteach.view.widgets.closing import Living
-from ikteach.view.widgets.esm import esm
+from ikteach.view.widgets.page import script, style
 
 
 class Ball(Living, anywidget.AnyWidget):
@@ -14,7 +14,7 @@ class Ball(Living, anywidget.AnyWidget):
     elevation  degrees above the floor, −85 to 85
     """
 
-    _esm = esm("ball")
+    _esm, _css = script("view/widgets/ball.js"), style("view/widgets/ball.css")
     azimuth = traitlets.Float(0.0).tag(sync=True)
     elevation = traitlets.Float(0.0).tag(sync=True)
     label = traitlets.Unicode("Rotation ball").tag(sync=True)

@@ -1,85 +1,106 @@
 // A picture of curves with a line at the chosen place. To assistive technology it is a slider.
-const STEPS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageUp: 30, PageDown: -30 };
 
+import { showPNG } from "./binary.js";
+import { chosenBy, clamp } from "./choosing.js";
+import { element, listen, OWN_KEYS, set, take } from "./dom.js";
+import { guarded } from "./guarded.js";
+
+/** @type {Record<string, number>} */
+const STEPS = {
+  ArrowLeft: -1,
+  ArrowDown: -1,
+  ArrowRight: 1,
+  ArrowUp: 1,
+  PageUp: 30,
+  PageDown: -30,
+};
+
+/** @type {Render} */
 function render({ model, el }) {
-  const box = document.createElement("div"), image = document.createElement("img");
-  const line = document.createElement("div");
-  box.className = "ikteach-curve";
-  box.style.cssText = "position:relative;width:fit-content;max-width:100%;cursor:crosshair";
-  image.style.cssText = "display:block;max-width:100%";
-  image.draggable = false;
-  line.style.cssText = "position:absolute;top:0;bottom:0;width:0;pointer-events:none;" +
-    "border-left:2px solid #d55e00";
-  box.append(image, line);
-  box.tabIndex = 0;
-  box.dataset.lmSuppressShortcuts = "true"; // or the notebook takes the arrow keys
-  box.setAttribute("role", "slider");
-  box.setAttribute("aria-label", "tick on the error plot");
-  box.setAttribute("aria-valuemin", "0");
-  el.appendChild(box);
-  let url = null;
-
-  function choose(i) {
-    const last = model.get("places").length - 1;
-    model.set("chosen", Math.min(Math.max(i, 0), last));
-    model.save_changes();
-  }
-
-  function nearest(x) {
-    const places = model.get("places");
-    let low = 0, high = places.length - 1;
-    while (high - low > 1) {
-      const middle = (low + high) >> 1;
-      if (places[middle] < x) low = middle; else high = middle;
-    }
-    return x - places[low] <= places[high] - x ? low : high;
-  }
-
-  function point(event) {
-    const { left, width } = image.getBoundingClientRect();
-    const [start, end] = model.get("span");
-    choose(nearest(((event.clientX - left) / width - start) / (end - start)));
-  }
+  const image = element("img", { draggable: "false" });
+  const line = element("div");
+  const box = makeBox(image, line);
+  el.append(box);
+  follow(model, box, image);
 
   function draw() {
-    if (url) URL.revokeObjectURL(url);
-    url = URL.createObjectURL(new Blob([model.get("png")], { type: "image/png" }));
-    image.src = url;
+    showPNG(image, model.get("png"));
     image.alt = model.get("alt");
-    box.setAttribute("aria-valuemax", model.get("places").length - 1);
+    set(box, { "aria-valuemax": model.get("places").length - 1 });
     move();
   }
 
   function move() {
-    const i = model.get("chosen"), [start, end] = model.get("span");
-    line.style.left = `${100 * (start + (model.get("places")[i] ?? 0) * (end - start))}%`;
-    box.setAttribute("aria-valuenow", i);
-    box.setAttribute("aria-valuetext", model.get("labels")[i] ?? "");
+    const chosen = model.get("chosen");
+    const [start, end] = model.get("span");
+    line.style.left = `${100 * (start + (model.get("places")[chosen] ?? 0) * (end - start))}%`;
+    set(box, { "aria-valuenow": chosen, "aria-valuetext": model.get("labels")[chosen] ?? "" });
+  }
+
+  const stop = listen(model, { "change:png": draw, "change:places": draw, "change:chosen": move });
+  draw();
+  return () => {
+    stop();
+    showPNG(image);
+  };
+}
+
+/** @param {HTMLElement[]} children */
+function makeBox(...children) {
+  const aria = { role: "slider", "aria-label": "tick on the error plot", "aria-valuemin": 0 };
+  const attributes = { ...OWN_KEYS, ...aria, class: "ikteach-curve", tabindex: 0 };
+  return element("div", attributes, ...children);
+}
+
+/**
+ * Choose by pointer and by keys.
+ * @param {Model} model
+ * @param {HTMLElement} box
+ * @param {HTMLElement} image
+ */
+function follow(model, box, image) {
+  const last = () => model.get("places").length - 1;
+
+  function choose(/** @type {number} */ i) {
+    model.set("chosen", clamp(i, 0, last()));
+    model.save_changes();
+  }
+
+  function point(/** @type {PointerEvent} */ event) {
+    const { left, width } = image.getBoundingClientRect();
+    const [start, end] = model.get("span");
+    choose(nearest(model.get("places"), ((event.clientX - left) / width - start) / (end - start)));
   }
 
   box.addEventListener("pointerdown", (event) => {
     box.setPointerCapture(event.pointerId);
     point(event);
   });
-  box.addEventListener("pointermove", (event) => { if (event.buttons & 1) point(event); });
-  box.addEventListener("keydown", (event) => {
-    const last = model.get("places").length - 1;
-    const ends = { Home: 0, End: last };
-    if (!(event.key in STEPS || event.key in ends)) return;
-    event.preventDefault();
-    event.stopPropagation();
-    choose(ends[event.key] ?? model.get("chosen") + STEPS[event.key]);
+  box.addEventListener("pointermove", (event) => {
+    if (event.buttons & 1) point(event);
   });
-  model.on("change:png", draw);
-  model.on("change:places", draw);
-  model.on("change:chosen", move);
-  draw();
-  return () => {
-    model.off("change:png", draw);
-    model.off("change:places", draw);
-    model.off("change:chosen", move);
-    if (url) URL.revokeObjectURL(url);
-  };
+  box.addEventListener("keydown", (event) => {
+    const chosen = chosenBy(event.key, STEPS, model.get("chosen"), last());
+    if (chosen === undefined) return;
+    take(event);
+    choose(chosen);
+  });
 }
 
-export default { render: told(render) };
+/**
+ * The number of the place nearest to x.
+ * @param {number[]} places ascending
+ * @param {number} x
+ */
+export function nearest(places, x) {
+  let low = 0;
+  let high = places.length - 1;
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (places[middle] < x) low = middle;
+    else high = middle;
+  }
+  return x - places[low] <= places[high] - x ? low : high;
+}
+
+export default { render: guarded(render) };

@@ -6,7 +6,7 @@ import anywidget
 import traitlets
 
 from ikteach.view.widgets.closing import Living
-from ikteach.view.widgets.esm import esm
+from ikteach.view.widgets.page import script, style
 
 
 class Curve(Living, anywidget.AnyWidget):
@@ -19,7 +19,7 @@ class Curve(Living, anywidget.AnyWidget):
     chosen    the number of the chosen one
     """
 
-    _esm = esm("curve")
+    _esm, _css = script("view/widgets/curve.js"), style("view/widgets/curve.css")
     png = traitlets.Bytes(b"").tag(sync=True)
     alt = traitlets.Unicode("").tag(sync=True)
     span = traitlets.List([0.0, 1.0]).tag(sync=True)

@@ -8,6 +8,7 @@ from importlib.metadata import version
 from typing import Any
 
 from ikteach.markup import Markup
+from ikteach.view.widgets.page import style_tag
 from ikteach.view.widgets.picture import Still
 from ikteach.view.widgets.prose import Prose
 
@@ -32,14 +33,7 @@ WIDGETS = Markup(
 ).format(PYTHREEJS, WHERE)
 
 # It stays unseen for so long as our scripts may still come, and for good when they have.
-STYLE = Markup("""<style>
-@keyframes ikteach-come { from { max-height: 0; visibility: hidden; } }
-@keyframes ikteach-go { to { max-height: 0; margin: 0; visibility: hidden; } }
-.ikteach-note { overflow: hidden; animation: ikteach-come 0s 6s backwards; }
-.ikteach-lives .ikteach-note { display: none; }
-body:not(.ikteach-lives) .ikteach-scene > :not(.ikteach-note) {
-  overflow: hidden; animation: ikteach-go 0s 6s forwards; }
-</style>""")
+STYLE = style_tag("view/widgets/lacking.css")
 
 
 class Note:

@@ -12,33 +12,13 @@ from numpy.typing import NDArray
 
 from ikteach.markup import Markup
 from ikteach.view.widgets.closing import Living
-from ikteach.view.widgets.esm import esm
-
-_ESM = """
-function render({ model, el }) {
-  const image = document.createElement("img");
-  image.style.maxWidth = "100%";
-  let url = null;
-  function update() {
-    if (url) URL.revokeObjectURL(url);
-    const png = model.get("png");
-    url = png?.byteLength ? URL.createObjectURL(new Blob([png], { type: "image/png" })) : null;
-    if (url) image.src = url;
-    image.alt = model.get("alt");
-  }
-  model.on("change", update);
-  update();
-  el.appendChild(image);
-  return () => { model.off("change", update); if (url) URL.revokeObjectURL(url); };
-}
-export default { render: told(render) };
-"""
+from ikteach.view.widgets.page import script, style
 
 
 class Picture(Living, anywidget.AnyWidget):
     """A PNG and its text alternative; both can change at any time."""
 
-    _esm = esm() + _ESM
+    _esm, _css = script("view/widgets/picture.js"), style("view/widgets/picture.css")
     png = traitlets.Bytes(b"").tag(sync=True)
     alt = traitlets.Unicode("").tag(sync=True)
 

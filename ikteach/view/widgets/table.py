@@ -6,7 +6,7 @@ import anywidget
 import traitlets
 
 from ikteach.view.widgets.closing import Living
-from ikteach.view.widgets.esm import esm
+from ikteach.view.widgets.page import script, style
 
 
 class Rows(Living, anywidget.AnyWidget):
@@ -15,7 +15,7 @@ class Rows(Living, anywidget.AnyWidget):
     header, rows  words; chosen: the number of the chosen row
     """
 
-    _esm = esm("rows")
+    _esm, _css = script("view/widgets/table.js"), style("view/widgets/table.css")
     header: Any = traitlets.List().tag(sync=True)
     rows: Any = traitlets.List().tag(sync=True)
     chosen = traitlets.Int(0).tag(sync=True)

@@ -1,0 +1,68 @@
+// Elements of a page, and their events.
+
+/** Attributes of what takes keys, which the notebook would take for its own. */
+export const OWN_KEYS = { "data-lm-suppress-shortcuts": "true" };
+
+/**
+ * Make an element of HTML with these attributes and children.
+ * @template {keyof HTMLElementTagNameMap} Name
+ * @param {Name} name
+ * @param {Attributes} [attributes]
+ * @param {(Node | string)[]} children
+ */
+export function element(name, attributes = {}, ...children) {
+  return filled(document.createElement(name), attributes, children);
+}
+
+/**
+ * Make an element of SVG with these attributes and children.
+ * @template {keyof SVGElementTagNameMap} Name
+ * @param {Name} name
+ * @param {Attributes} [attributes]
+ * @param {(Node | string)[]} children
+ */
+export function svg(name, attributes = {}, ...children) {
+  return filled(document.createElementNS("http://www.w3.org/2000/svg", name), attributes, children);
+}
+
+/**
+ * @template {Element} Made
+ * @param {Made} made
+ * @param {Attributes} attributes
+ * @param {(Node | string)[]} children
+ */
+function filled(made, attributes, children) {
+  set(made, attributes);
+  made.append(...children);
+  return made;
+}
+
+/**
+ * Set attributes of an element.
+ * @param {Element} one
+ * @param {Attributes} attributes
+ */
+export function set(one, attributes) {
+  for (const [name, value] of Object.entries(attributes)) one.setAttribute(name, `${value}`);
+}
+
+/**
+ * Keep an event from the browser and from the notebook.
+ * @param {Event} event
+ */
+export function take(event) {
+  event.preventDefault();
+  event.stopPropagation();
+}
+
+/**
+ * Call each act on its events of a model; call the answer to stop that.
+ * @param {Source} source
+ * @param {Record<string, Act>} acts
+ */
+export function listen(source, acts) {
+  for (const [events, act] of Object.entries(acts)) source.on(events, act);
+  return () => {
+    for (const [events, act] of Object.entries(acts)) source.off(events, act);
+  };
+}
