@@ -13,7 +13,7 @@ from ikteach.arrays import Array
 from ikteach.body import Effectors, Tree, forward, locate
 from ikteach.checks import shown
 from ikteach.markup import as_label
-from ikteach.view.stage.skin import EFFECTOR_COLOURS
+from ikteach.view.stage.colours import effector_colour
 from ikteach.view.widgets.picture import Still, png_of
 
 STYLES = ("-", "--", "-.", ":")  # these, hatches and marks: colour is never the only sign
@@ -35,7 +35,8 @@ def lines(
     figure, axes = _axes(title, xlabel, ylabel, log)
     for i, name in enumerate(table):
         style = MARKS[i % len(MARKS)] * marks + STYLES[i % len(STYLES)]
-        axes.plot(table.index, table[name], style, color=colour(i), ms=4, label=as_label(name))
+        colour = effector_colour(i)
+        axes.plot(table.index, table[name], style, color=colour, ms=4, label=as_label(name))
     axes.legend(fontsize=8)
     words = (
         f"{name} from {part.iloc[0]:.3g} to {part.iloc[-1]:.3g}, "
@@ -116,11 +117,6 @@ def outline(tree: Tree, effectors: Effectors, theta: Array) -> Array:
     return np.concatenate([frames.positions, locate(frames, effectors)])[:, :2].T
 
 
-def colour(i: int) -> str:
-    """Give the i-th thing its colour, beginning anew after the last."""
-    return EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)]
-
-
 def draw_distances(axes: Axes, at: Any, error: Mapping[Any, Any], least: float = LEAST) -> None:
     """Draw a curve per effector of {name: distances} on a logarithmic axis.
 
@@ -130,7 +126,12 @@ def draw_distances(axes: Axes, at: Any, error: Mapping[Any, Any], least: float =
     for i, (name, far) in enumerate(error.items()):
         style = STYLES[i % len(STYLES)]
         axes.semilogy(
-            at, np.maximum(far, least), style, color=colour(i), label=as_label(name), lw=1.6
+            at,
+            np.maximum(far, least),
+            style,
+            color=effector_colour(i),
+            label=as_label(name),
+            lw=1.6,
         )
     axes.grid(alpha=0.3)
 
@@ -156,7 +157,7 @@ def draw_bars(
             yerr=None if spread is None else spread[name],
             capsize=3,
             label=as_label(name),
-            color=colour(i + first),
+            color=effector_colour(i + first),
             hatch=HATCHES[(i + first) % len(HATCHES)],
             edgecolor="white",
             linewidth=0.4,

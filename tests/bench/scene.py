@@ -26,7 +26,7 @@ from ikteach.body import figures, forward, jacobian, locate
 from ikteach.motion import gait, step
 from ikteach.solvers.singularity import ellipsoid
 from ikteach.view import Scene
-from ikteach.view.stage.stage import LAYERS
+from ikteach.view.stage.layers import LAYERS
 from ikteach.view.webgl.targets import Targets
 tree, effectors = figures.human()
 methods = ["transpose", "pseudoinverse", "dls", "sdls"]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from ikteach.view.stage.stage import LAYERS
+from ikteach.view.stage.layers import LAYERS
 from tests.browser.conftest import CANVAS, DRIVER, READY, Lab, Notebook, pixels
 
 FRAME = f"+(document.querySelector('{DRIVER}').dataset.frame ?? -1)"

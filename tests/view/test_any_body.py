@@ -92,8 +92,8 @@ def inside(pixels, size=SIZE):
 
 
 def projected(film, points):
-    flat, away = film._eye.project(points)
-    return flat / film._finer, away > 0.05  # its own near plane, in its own units
+    flat, away = film.drawing.eye.project(points)
+    return flat / film.drawing.finer, away > 0.05  # its own near plane, in its own units
 
 
 @pytest.fixture

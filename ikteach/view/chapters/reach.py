@@ -16,9 +16,11 @@ from ikteach.motion.reach.reaching import Reach, Reaching
 from ikteach.study import standings
 from ikteach.view.live.live import Live
 from ikteach.view.live.panel import Does, Panel, button, choice, dropdown, slider
-from ikteach.view.stage.skin import RED
-from ikteach.view.webgl import objects as solids
-from ikteach.view.webgl.scene import CAMERAS, Scene
+from ikteach.view.stage.colours import RED
+from ikteach.view.stage.forms import Label
+from ikteach.view.stage.stage import CAMERAS
+from ikteach.view.webgl import objects
+from ikteach.view.webgl.scene import Scene
 from ikteach.view.webgl.targets import Targets
 from ikteach.view.widgets import doors
 from ikteach.view.widgets.prose import Prose, table
@@ -35,7 +37,7 @@ class CursorScene(Scene):
         self._words = [
             word
             for words, colour in (("within reach", WHITE), ("out of reach", RED))
-            for word in solids.labels(words, colour, 0.08 * unit, [[0, 0.12 * unit, 0]])
+            for word in objects.labels([Label((0, 0.12 * unit, 0), words, colour, 0.08 * unit)])
         ]
         (self._ball,) = self.targets
         self._ball.children = self._words

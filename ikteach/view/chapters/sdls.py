@@ -14,11 +14,10 @@ from ikteach.markup import Markup
 from ikteach.motion import gait, step
 from ikteach.solvers import sdls
 from ikteach.solvers.response import Directions, directions, factors, filtered
-from ikteach.view.charts import colour
 from ikteach.view.live.bench import Bench, Shown
 from ikteach.view.live.canvas import Canvas
 from ikteach.view.live.panel import log_slider, slider
-from ikteach.view.stage.skin import BLUE, GREEN, ORANGE
+from ikteach.view.stage.colours import BLUE, GREEN, ORANGE, effector_colour
 from ikteach.view.widgets.closing import making
 from ikteach.view.widgets.prose import grid
 
@@ -117,9 +116,9 @@ class Body:
         (self._bones,) = axes.plot([], [], "-", color="0.45", lw=3)
         self._arrows, self._tips = [], []
         for i, name in enumerate(EFFECTORS.names):
-            self._arrows += axes.plot([], [], "-", color=colour(i), lw=3)
+            self._arrows += axes.plot([], [], "-", color=effector_colour(i), lw=3)
             sign = "s" if name.endswith(".r") else "o"
-            self._tips += axes.plot([], [], sign, color=colour(i), ms=7)
+            self._tips += axes.plot([], [], sign, color=effector_colour(i), ms=7)
         self.moving = [self._bones, *self._arrows, *self._tips]
 
     def draw(self, p: Array, s: Array, u: Array) -> None:

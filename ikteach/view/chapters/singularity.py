@@ -9,11 +9,10 @@ from ikteach.arrays import Array
 from ikteach.body import forward, jacobian, locate
 from ikteach.body.figures import planar_arm
 from ikteach.solvers import SOLVERS, conditioning, ellipsoid, manipulability
-from ikteach.view.charts import colour
 from ikteach.view.live.bench import Bench, Shown
 from ikteach.view.live.canvas import Canvas
 from ikteach.view.live.panel import slider
-from ikteach.view.stage.skin import PURPLE, SKY
+from ikteach.view.stage.colours import PURPLE, SKY, effector_colour
 from ikteach.view.webgl.scene import Scene
 
 LEAST = 1e-5  # [rad] shorter bars are not seen
@@ -70,7 +69,7 @@ class SingularityPlot:
         right.set(title="length of the step ‖Δθ‖ [rad]", xscale="log", xlim=(LEAST, 1e3))
         right.axvline(np.pi, color="0.4", ls=":")
         at = range(len(SOLVERS))
-        colours = list(map(colour, at))
+        colours = list(map(effector_colour, at))
         self._steps = right.barh(at, [1.0] * len(SOLVERS), color=colours, edgecolor="white")
         right.set_yticks(at, list(SOLVERS))
         right.invert_yaxis()

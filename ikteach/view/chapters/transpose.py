@@ -15,7 +15,7 @@ from ikteach.view.charts import outline
 from ikteach.view.live.bench import Bench, Shown
 from ikteach.view.live.canvas import Canvas
 from ikteach.view.live.panel import slider
-from ikteach.view.stage.skin import BLUE, GREEN, ORANGE, RED
+from ikteach.view.stage.colours import BLUE, GREEN, ORANGE, RED
 from ikteach.view.widgets.closing import making
 
 START = np.array([0.9, -0.7, -0.6])  # [rad] a bent arm

@@ -13,8 +13,8 @@ import traitlets
 
 from ikteach.motion.live.log import Log
 from ikteach.motion.live.session import Session
+from ikteach.view.stage.colours import effector_colour
 from ikteach.view.stage.lengths import Lengths, decade
-from ikteach.view.stage.skin import EFFECTOR_COLOURS
 from ikteach.view.widgets.closing import Living
 from ikteach.view.widgets.page import script, style
 
@@ -86,7 +86,7 @@ def _lines(names: Any) -> list[dict[str, Any]]:
     return [
         {
             "name": name,
-            "colour": EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)],
+            "colour": effector_colour(i),
             "dashes": DASHES[i % len(DASHES)],
         }
         for i, name in enumerate(names)

@@ -10,17 +10,20 @@ from math import radians, tan
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from ikteach.arrays import Array, ArrayLike
 from ikteach.body.rotation import sticks
-from ikteach.view.stage.skin import Ball, Part
+from ikteach.formats.movie import Pixels
+from ikteach.view.stage.colours import rgb
+from ikteach.view.stage.forms import Arrow, Ball, Box, Form, Limb, Mark, Rod
 from ikteach.view.stage.stage import FIELD, picture_axes
 
 AMBIENT, DIFFUSE = 0.5, 0.62
 LIGHT = np.array([2.0, 4.0, 3.0]) / np.sqrt(29)  # towards it, in the world
 NEAR = 0.05  # [units of the eye]
 ANYWHERE = 1e9
+FLAT = 30  # how many times as long as short a solid is that single precision can draw
+HEAD = 0.78  # where the head of an arrow begins
 
 
 class Solid(NamedTuple):
@@ -37,31 +40,47 @@ class Solid(NamedTuple):
     colour: Array
 
 
-def solids(part: Part, frame: int) -> list[Solid]:
-    """What a part of a skin is made of."""
-    if isinstance(part, Ball):
-        return [ellipsoid(part.centre, part.radii, part.colour, frame)]
-    start, end = np.asarray(part.start, dtype=float), np.asarray(part.end, dtype=float)
-    tips = [
-        ellipsoid(at, (radius,) * 3, part.colour, frame)
-        for at, radius in ((start, part.thick), (end, part.thin))
-    ]
-    return [rod(start, end, part.thick, part.thin, part.colour, frame), *tips]
+def solids(form: Form, colour: str, frame: int) -> list[Solid]:
+    """Make solids of a form; none of one that is flat, or made of lines."""
+    match form:
+        case Ball(centre, radii):
+            return [ellipsoid(centre, radii, colour, frame)]
+        case Limb(start, end, thick, thin):
+            tips = [
+                ellipsoid(at, (r,) * 3, colour, frame) for at, r in ((start, thick), (end, thin))
+            ]
+            return [rod(start, end, thick, thin, colour, frame), *tips]
+        case Rod(start, end, radius):
+            return [rod(start, end, radius, radius, colour, frame)]
+        case Arrow(radius):
+            shaft = rod((0, 0, 0), (0, HEAD, 0), radius, radius, colour, frame)
+            return [shaft, rod((0, HEAD, 0), (0, 1, 0), 2.4 * radius, 0, colour, frame)]
+        case Box(half):
+            return box(half, colour, frame)
+        case Mark(radius, boxed):
+            if boxed:
+                return box(0.78 * radius, colour, frame)
+            return [ellipsoid((0, 0, 0), (radius,) * 3, colour, frame)]
+        case _:
+            return []
 
 
 def ellipsoid(centre: ArrayLike, radii: ArrayLike, colour: str, frame: int) -> Solid:
-    """((x − c)/r)² = 1 in each coordinate, summed."""
+    """Make Q of Σ ((x − c)/r)² = 1."""
     c, r = np.asarray(centre, dtype=float), np.asarray(radii, dtype=float)
     to_unit = np.diag([*(1 / r), 1.0])
     to_unit[:3, 3] = -c / r
     Q = to_unit.T @ np.diag([1.0, 1, 1, -1]) @ to_unit
     ball = [*c, r.max()]
-    return Solid(frame, Q, np.zeros((2, 4)), np.full(2, ANYWHERE), np.array([ball, ball]),
-                 rgb(colour))  # fmt: skip
+    free = np.full(2, ANYWHERE)
+    return Solid(frame, Q, np.zeros((2, 4)), free, np.array([ball, ball]), rgb(colour))
 
 
-def rod(start: Array, end: Array, thick: float, thin: float, colour: str, frame: int) -> Solid:
-    """The cone x² + z² = (thick + (thin − thick) y)² for y from 0 to 1 along start → end."""
+def rod(
+    start: ArrayLike, end: ArrayLike, thick: float, thin: float, colour: str, frame: int
+) -> Solid:
+    """Make Q of x² + z² = (thick + (thin − thick) y)², y from 0 to 1 along start → end."""
+    start, end = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
     to_rod = np.linalg.inv(square(sticks(start, end)))
     local = np.zeros((4, 4))
     local[0, 0] = local[2, 2] = 1
@@ -74,7 +93,7 @@ def rod(start: Array, end: Array, thick: float, thin: float, colour: str, frame:
 
 
 def box(half: float, colour: str, frame: int) -> list[Solid]:
-    """A cube of 2 · half: three pairs of faces, x² = half², each cut by the other two."""
+    """Make three pairs of faces, x² = half², each cut by the other two."""
     faces = []
     for axis in range(3):
         Q = np.diag([0.0, 0, 0, -half * half])
@@ -94,9 +113,13 @@ class Eye:
     """
 
     def __init__(
-        self, position: ArrayLike, at: ArrayLike, size: tuple[int, int], field: float = FIELD,
+        self,
+        position: ArrayLike,
+        at: ArrayLike,
+        size: tuple[int, int],
+        field: float = FIELD,
         unit: float = 1.0,
-    ) -> None:  # fmt: skip
+    ) -> None:
         eye = np.asarray(position, dtype=float)
         self.axes = picture_axes(np.subtract(eye, at)).T  # x right, y up, z towards the eye
         self.view = np.eye(4)  # from the world to these, in units from the eye
@@ -107,54 +130,75 @@ class Eye:
         self.x = ((np.arange(width) + 0.5 - width / 2) * self.pixel).astype("f4")
         self.y = ((height / 2 - 0.5 - np.arange(height)) * self.pixel).astype("f4")
 
+    def seen(self, points: ArrayLike) -> Array:
+        """Give points (..., 3) in the axes of the eye, in units from it."""
+        return np.asarray(points, dtype=float) @ self.view[:3, :3].T + self.view[:3, 3]
+
     def project(self, points: ArrayLike) -> tuple[Array, Array]:
-        """Pixels (..., 2) of points (..., 3), and how far in front they are (...) [units]."""
-        seen = np.asarray(points, dtype=float) @ self.view[:3, :3].T + self.view[:3, 3]
-        away = -seen[..., 2]
-        flat = seen[..., :2] / np.maximum(away, NEAR)[..., None] / self.pixel
-        return flat * [1, -1] + np.array(self.size) / 2, away
+        """Give pixels (..., 2) of points (..., 3), and how far in front they are [units]."""
+        seen = self.seen(points)
+        return self.flat(seen), -seen[..., 2]
+
+    def flat(self, seen: Array) -> Array:
+        """Give pixels (..., 2) of points (..., 3) in the axes of the eye."""
+        across = seen[..., :2] / np.maximum(-seen[..., 2], NEAR)[..., None] / self.pixel
+        return across * [1, -1] + np.array(self.size) / 2
 
 
-def draw(pixels: npt.NDArray[np.uint8], eye: Eye, parts: Sequence[Solid], frames: Array) -> None:
-    """Draw the solids into pixels (height, width, 3), each in its frame (4, 4) of `frames`."""
-    nearness = np.zeros(pixels.shape[:2], dtype="f4")  # 1/t, so that 0 is infinitely far
+def draw(
+    pixels: Pixels, eye: Eye, parts: Sequence[Solid], frames: Array, nearness: Any = None
+) -> Any:
+    """Draw the solids into pixels (height, width, 3), each in its frame (4, 4) of `frames`.
+
+    nearness  1/t of what is there, (height, width), so that 0 is infinitely far; it is written to,
+              and given back
+    """
+    if nearness is None:
+        nearness = np.zeros(pixels.shape[:2], dtype="f4")
+    if not parts:
+        return nearness
     T = eye.view @ frames[[part.frame for part in parts]]
     inverse = np.linalg.inv(T)
     Q = inverse.mT @ np.array([part.Q for part in parts]) @ inverse
     W = np.array([part.W for part in parts]) @ inverse
     balls = np.array([part.balls for part in parts])
     centres = np.einsum("nij,nbj->nbi", T[:, :3, :3], balls[..., :3]) + T[:, None, :3, 3]
-    stretch = np.linalg.norm(T[:, :3, :3], axis=1).max(axis=-1)
-    windows = _windows(eye, centres, balls[..., 3] * stretch[:, None])
+    stretch = np.linalg.norm(T[:, :3, :3], axis=1)
+    most = stretch.max(axis=-1)
+    windows = _windows(eye, centres, balls[..., 3] * most[:, None])
     light = (eye.axes @ LIGHT).astype("f4")
-    Q, W = Q.astype("f4"), W.astype("f4")
+    plain = most < FLAT * stretch.min(axis=-1)  # what is flatter needs all digits
     for i, part in enumerate(parts):
-        _trace(pixels, nearness, eye, windows[i], Q[i], W[i], part, light)
+        digits = "f4" if plain[i] else "f8"
+        _trace(
+            pixels, nearness, eye, windows[i], Q[i].astype(digits), W[i].astype(digits), part, light
+        )
+    return nearness
 
 
 def _windows(eye: Eye, centres: Array, radii: Array) -> Any:
-    """The pixels (n, 4) left, right, top, bottom that the balls (n, 2) can cover."""
+    """Find the pixels (n, 4) left, right, top, bottom that balls (n, 2) can cover."""
     x, y, away = centres[..., 0], centres[..., 1], -centres[..., 2]
     near = np.maximum(away - radii, NEAR)
     far = away + radii
 
-    def reach(at: Array, side: int) -> Array:
+    def bound(at: Array, side: int) -> Array:
         edge = at + side * radii
         ends = edge / near, edge / far
         return np.maximum(*ends) if side > 0 else np.minimum(*ends)
 
     width, height = eye.size
-    left = (reach(x, -1).min(axis=-1) / eye.pixel + width / 2).clip(0, width)
-    right = (reach(x, 1).max(axis=-1) / eye.pixel + width / 2 + 1).clip(0, width)
-    top = (height / 2 - reach(y, 1).max(axis=-1) / eye.pixel).clip(0, height)
-    bottom = (height / 2 - reach(y, -1).min(axis=-1) / eye.pixel + 1).clip(0, height)
+    left = (bound(x, -1).min(axis=-1) / eye.pixel + width / 2).clip(0, width)
+    right = (bound(x, 1).max(axis=-1) / eye.pixel + width / 2 + 1).clip(0, width)
+    top = (height / 2 - bound(y, 1).max(axis=-1) / eye.pixel).clip(0, height)
+    bottom = (height / 2 - bound(y, -1).min(axis=-1) / eye.pixel + 1).clip(0, height)
     return np.stack([left, right, top, bottom], axis=-1).astype(int)
 
 
 def _trace(
-    pixels: npt.NDArray[np.uint8], nearness: Any, eye: Eye, window: Any, Q: Any, W: Any,
-    part: Solid, light: Any,
-) -> None:  # fmt: skip
+    pixels: Pixels, nearness: Any, eye: Eye, window: Any, Q: Any, W: Any, part: Solid, light: Any
+) -> None:
+    """Follow the rays of a window to one solid, and draw it where it is nearer."""
     left, right, top, bottom = window
     if left >= right or top >= bottom:
         return
@@ -186,11 +230,6 @@ def _trace(
 
 
 def square(matrices: Array) -> Array:
-    """[R | p] (..., 3, 4) with the last row 0 0 0 1 put under it."""
+    """Put the row 0 0 0 1 under [R | p] (..., 3, 4)."""
     last = np.broadcast_to([0.0, 0, 0, 1], (*matrices.shape[:-2], 1, 4))
     return np.concatenate([matrices, last], axis=-2)
-
-
-def rgb(colour: str) -> Array:
-    """The three numbers of "#rrggbb", 0 to 255."""
-    return np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)], dtype="f4")

@@ -15,23 +15,23 @@ class Lengths(NamedTuple):
 
     @classmethod
     def of(cls, tree: Tree, effectors: Effectors) -> "Lengths":
-        """The unit for distances: the largest of which the body's reach has ten."""
+        """Choose the unit for distances: the largest of which the body's reach has ten."""
         radius = extent(tree, effectors).radius
         return next((one for one in UNITS if radius >= 10 * one.metres), UNITS[-1])
 
     @classmethod
     def of_places(cls, radius: float) -> "Lengths":
-        """The unit for coordinates of a body of that reach [m]: metres as long as they do."""
+        """Choose the unit for coordinates of a body of that reach [m]: metres while they do."""
         fit = (one for one in UNITS if one.name != "cm" and radius >= LEAST[one.name])
         return next(fit, UNITS[-1])
 
     def number(self, length: float, digits: int = 1) -> str:
-        """The number of a length [m]: to so many digits, and short where it is far too large."""
+        """Write a length [m] as a number, short where it is far too large."""
         value = length / self.metres
         return f"{value:.{digits}f}" if abs(value) < 1e6 else f"{value:.3g}"
 
     def __call__(self, length: float, digits: int = 1) -> str:
-        """A length [m] in words, as "12.3 cm"."""
+        """Write a length [m] with its unit, as "12.3 cm"."""
         return f"{self.number(length, digits)} {self.name}"
 
 
@@ -49,17 +49,17 @@ METRE = UNITS[1]
 
 
 def decade(tree: Tree, effectors: Effectors) -> float:
-    """The power of ten that is nearest to the body's reach [m]: 1 of a human."""
+    """Find the power of ten nearest to the body's reach [m]: 1 of a human."""
     return 10.0 ** round(log10(extent(tree, effectors).radius))
 
 
 def digits_of(step: float) -> int:
-    """How many digits behind the point tell multiples of a step apart."""
+    """Count the digits behind the point that tell multiples of a step apart."""
     return max(0, -floor(log10(step) + 1e-9))
 
 
 def round_step(range_: float, steps: int = 300) -> float:
-    """A step of 1, 2 or 5 times a power of ten that goes through a range in about so many."""
+    """Find a step of 1, 2 or 5 times a power of ten, of which a range has about `steps`."""
     rough = range_ / steps
     power = 10.0 ** floor(log10(rough))
     return float(min((1, 2, 5, 10), key=lambda m: abs(log10(m * power / rough))) * power)

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Index, frozen
+from ikteach.view.stage.forms import Ring, Sole, Wires
 
 
 class Shape(NamedTuple):
@@ -22,12 +23,12 @@ class Shape(NamedTuple):
     normals: Array | None = None
 
     def at(self, place: Array) -> "Shape":
-        """The same, carried by [R | p] (3, 4); without normals."""
+        """Carry it by [R | p] (3, 4); the normals are lost."""
         return Shape(self.points @ place[:, :3].T + place[:, 3], self.joined)
 
 
 def revolved(outline: ArrayLike, around: int) -> Shape:
-    """What an outline (p, 2) of radii and heights, from the top down, sweeps around the y axis."""
+    """Turn an outline (p, 2) of radii and heights, from the top down, around the y axis."""
     radius, height = np.transpose(np.asarray(outline, dtype=float))[..., None]
     turn = (2 * np.arange(around + 1) + 1) * np.pi / around  # of 4, a box along the axes
     y = np.broadcast_to(height, (len(height), around + 1))
@@ -43,7 +44,7 @@ def revolved(outline: ArrayLike, around: int) -> Shape:
 
 @cache
 def globe(around: int, half: int) -> Shape:
-    """A ball of radius 1, in so many slices, each half of it in so many rings.
+    """Make a ball of radius 1, in slices, each half of it in rings.
 
     The equator is there twice, a hair above and below, so that a limb can be drawn apart there.
     """
@@ -54,44 +55,64 @@ def globe(around: int, half: int) -> Shape:
 
 
 def rod(radius: float, around: int = 6) -> Shape:
-    """A rod one metre along y from the origin."""
+    """Make a rod one metre along y from the origin."""
     return revolved([(0, 1), (radius, 1), (radius, 0), (0, 0)], around)
 
 
 def arrow(radius: float) -> Shape:
-    """An arrow one metre along y from the origin."""
+    """Make an arrow one metre along y from the origin."""
     return revolved([(0, 1), (2.4 * radius, 0.78), (radius, 0.78), (radius, 0), (0, 0)], 7)
 
 
-def mark(name: str, radius: float) -> Shape:
-    """A box for a name that ends with .r, else a ball, as rough as may be: eight triangles."""
-    if name.endswith(".r"):
+def mark(radius: float, boxed: bool) -> Shape:
+    """Make a box, or a ball as rough as may be: eight triangles."""
+    if boxed:
         side = 0.78 * radius
         wide = side * np.sqrt(2)
         return revolved([(0, side), (wide, side), (wide, -side), (0, -side)], 4)
     return revolved([(0, radius), (radius, 0), (0, -radius)], 4)
 
 
-def sole(name: str, wide: float, long: float) -> Shape:
-    """A flat print: a rectangle for a name that ends with .r, else an ellipse."""
-    around = 4 if name.endswith(".r") else 16
-    disc = revolved([(0, 0), (1.1 if around == 4 else 1.0, 0)], around)
+def sole(wide: float, long: float, boxed: bool) -> Shape:
+    """Make a flat print: a rectangle, or an ellipse."""
+    disc = revolved([(0, 0), (1.1, 0)], 4) if boxed else revolved([(0, 0), (1, 0)], 16)
     return Shape(disc.points * [wide, 1, long], disc.joined)
 
 
 def ring(thick: float) -> Shape:
-    """A ring of radius 1 around the z axis."""
+    """Make a ring of radius 1 around the z axis."""
     turn = np.linspace(0, -2 * np.pi, 7)
     points, corners, _ = revolved(np.c_[1 + thick * np.cos(turn), thick * np.sin(turn)], 96)
     return Shape(points[:, [0, 2, 1]] * [1, 1, -1], corners)
 
 
-def wires(circles: Sequence[float] = (-0.71, 0.0, 0.71), meridians: int = 3) -> Shape:
-    """A ball of radius 1 as wires: parallels at these heights, and circles through the poles."""
+def wires(heights: Sequence[float], meridians: int) -> Shape:
+    """Make a ball of radius 1 of wires: parallels at these heights, and meridians."""
     turn = np.linspace(0, 2 * np.pi, 37)
     c, s, o = np.cos(turn), np.sin(turn), np.zeros_like(turn)
-    rings = [np.c_[np.sqrt(1 - y * y) * c, o + y, np.sqrt(1 - y * y) * s] for y in circles]
+    rings = [np.c_[np.sqrt(1 - y * y) * c, o + y, np.sqrt(1 - y * y) * s] for y in heights]
     for a in np.arange(meridians) * np.pi / meridians:
         rings.append(np.c_[np.cos(a) * c, s, np.sin(a) * c])
     first = np.arange(len(rings) * len(turn)).reshape(len(rings), -1)[:, :-1].ravel()
     return Shape(np.concatenate(rings), np.stack([first, first + 1], axis=-1))
+
+
+@cache
+def lines(form: Ring | Wires) -> Shape:
+    """Make segments of what is drawn with a pen."""
+    return wires(*form) if isinstance(form, Wires) else _circle()
+
+
+def _circle(around: int = 96) -> Shape:
+    """Make a circle of radius 1 around the z axis."""
+    turn = np.linspace(0, 2 * np.pi, around + 1)
+    first = np.arange(around)
+    points = np.c_[np.cos(turn), np.sin(turn), 0 * turn]
+    return Shape(points, np.stack([first, first + 1], axis=-1))
+
+
+@cache
+def flat(form: Sole) -> Array:
+    """Give the outline (p, 3) of a print."""
+    points = sole(*form).points
+    return points[len(points) // 2 :]  # after those in its middle

@@ -1,26 +1,24 @@
-"""What both renderers agree on: which figures stand where, and what one moment of them is.
+"""Which figures stand where, and what one moment of them is.
 
 A renderer is a `View`. `scene.Scene` is the live one (WebGL, needs a kernel); `still.StillScene`
-draws the same things as a picture, for places without WebGL or without a kernel. Either is told
+draws the same layers as a picture, for places without WebGL or without a kernel. Either is given
 poses and arrays, and solves nothing.
 """
 
 from collections.abc import Sequence
 from math import atan, cos, radians, sin, tan
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol, TypedDict, Unpack
 
 import numpy as np
 
-from ikteach.arrays import Array, ArrayLike
+from ikteach.arrays import Array, ArrayLike, finite
 from ikteach.body import Effectors, Frames, Tree, forward, locate
 from ikteach.body.extent import extent
 from ikteach.body.tree import GROUND
+from ikteach.checks import numbers, shown
 from ikteach.names import unknown
-from ikteach.view.stage.skin import flesh_of, stick_skin
+from ikteach.view.stage.skin import skin_of, stick_skin
 
-LAYERS = (
-    "world axes", "joint axes", "footprints", "trails", "columns of J", "ellipsoid", "reach",
-)  # fmt: skip
 SQUARE = 0.5  # side of a square of the floor under a human [m]
 SHOWN_AT = 0.5  # length on the screen of 1 m/rad [m]: columns of J, axes of the ellipsoid
 REACH = 1.2  # radius of the ball that holds all poses of a body of unit 1, about a human's [m]
@@ -39,12 +37,36 @@ FLAT = 1e-6  # sine of the angle by which a direction in a plane may miss it
 TINY = 1e-150  # keeps 0 / 0 away where a link has no length
 
 
+class About(TypedDict, total=False):
+    """What layers may be shown of a moment, beside poses and targets; `View.show` takes it.
+
+    floor      height of the floor [m]; None: under the figure at rest
+    advance    how far the figures have gone [m]: the floor glides back under them
+    change     a number that comes back when this has been drawn (live renderer)
+    effector   at which effector the next two are drawn
+    columns    (3, n) or (f, 3, n): that effector's rows of J [m/rad], an arrow per column
+    ellipsoid  (directions (..., 3, 3) in columns, lengths (..., 3) [m/rad])
+    reach      (centre (3,), inner, outer [m]) of each chain, at most one per effector; a radius
+               that is infinite is not drawn
+    frames     forward(tree, theta), from whoever has it already
+    """
+
+    floor: float | None
+    advance: float
+    change: int
+    effector: int
+    columns: ArrayLike | None
+    ellipsoid: tuple[ArrayLike, ArrayLike] | None
+    reach: Sequence[tuple[ArrayLike, float, float]]
+    frames: Frames | None
+
+
 class View(Protocol):
     """What can be asked of any renderer.
 
     widget   what to display
     stage    which figures stand where
-    layers   {name: whether it is drawn}, for the names in `LAYERS`
+    layers   {name: whether it is drawn}, for the names in `layers.LAYERS`
     dark     whether the background is dark; may be set at any time
     """
 
@@ -54,25 +76,10 @@ class View(Protocol):
 
     @property
     def layers(self) -> dict[str, bool]:
-        """Which layers are drawn."""
+        """Tell which layers are drawn."""
 
-    def show(
-        self, theta: Array, targets: Array, *, floor: float | None = None, advance: float = 0.0,
-        change: int = 0, effector: int = 0, columns: ArrayLike | None = None,
-        ellipsoid: tuple[ArrayLike, ArrayLike] | None = None,
-        reach: Sequence[tuple[ArrayLike, float, float]] = (), frames: Frames | None = None,
-    ) -> None:  # fmt: skip
-        """Draw poses θ (n,) or (f, n) and targets (k, 3) or (f, k, 3).
-
-        floor      height of the floor [m]; None: under the figure at rest
-        advance    how far the figures have gone [m]: the floor glides back under them
-        change     a number that comes back when this has been drawn (live renderer)
-        effector   at which effector the next two are drawn
-        columns    (3, n) or (f, 3, n): that effector's rows of J [m/rad], a column an arrow
-        ellipsoid  (directions (..., 3, 3) in columns, lengths (..., 3) [m/rad])
-        reach      (centre (3,), inner, outer [m]) of each chain, at most one an effector
-        frames     forward(tree, theta), from whoever has it already
-        """
+    def show(self, theta: Array, targets: Array, **about: Unpack[About]) -> None:
+        """Draw poses θ (n,) or (f, n), targets (k, 3) or (f, k, 3), and what `About` names."""
 
     def switch(self, layer: str, on: bool = True) -> None:
         """Draw a layer, or do not; LookupError for an unknown name."""
@@ -115,17 +122,20 @@ class Stage:
     """
 
     def __init__(
-        self, tree: Tree, effectors: Effectors, names: Sequence[str] = ("",),
+        self,
+        tree: Tree,
+        effectors: Effectors,
+        names: Sequence[str] = ("",),
         apart: float | None = None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         if not names:
             raise ValueError("a scene needs at least one figure")
         self.tree, self.effectors, self.names = tree, effectors, list(names)
-        flesh = flesh_of(tree)
-        self.human = flesh is not None
-        if flesh is not None:
-            self.extent, self.unit, self.base = flesh.extent, flesh.unit, flesh.base
-            self.skin = flesh.parts
+        skin = skin_of(tree)
+        self.human = skin is not None
+        if skin is not None:
+            self.extent, self.unit, self.base = skin.extent, skin.unit, skin.base
+            self.skin = skin.parts
         else:
             self.extent = extent(tree, effectors)
             self.unit = self.extent.radius / REACH
@@ -145,28 +155,28 @@ class Stage:
 
     @property
     def planar(self) -> bool:
-        """Whether the figure lives in a plane."""
+        """Tell whether the figure lives in a plane."""
         return self.normal is not None
 
     @property
     def overlaid(self) -> bool:
-        """Whether several figures stand in one place; they share one set of targets."""
+        """Tell whether several figures stand in one place; they share one set of targets."""
         return len(self) > 1 and self.apart == 0
 
     @property
     def side(self) -> str:
-        """Where one looks from at first."""
+        """Name the side one looks from at first."""
         beside = len(self) > 1 and not self.overlaid
         return "plane" if self.planar else "front" if beside else "three-quarter"
 
     @property
     def free(self) -> Array:
-        """1 for each coordinate (3,) in which anything can move, 0 for that across its plane."""
+        """Give 1 per coordinate (3,) in which anything can move, 0 for that across its plane."""
         across = np.zeros(3) if self.normal is None else abs(self.normal)
         return np.where(across > 1 - FLAT, 0.0, 1.0)
 
     def eye(self, side: str, aspect: float) -> Array:
-        """Where a camera stands that sees all poses of all figures from a named side, (3,) [m].
+        """Place a camera that sees all poses of all figures from a named side, (3,) [m].
 
         It looks at the middle of them. aspect: width over height of its picture, of which `FIELD`
         is the height. LookupError for an unknown side.
@@ -182,79 +192,84 @@ class Stage:
         return self.extent.centre + float(np.max(far)) * axes[:, 2]
 
     def _towards(self, side: str) -> Array:
-        """The way from the figure to a named camera; LookupError for an unknown one."""
+        """Point from the figure to a named camera; LookupError for an unknown one."""
         ways = {**CAMERAS, PLANE: CAMERAS["front"] if self.normal is None else self.normal}
         if side not in ways:
             raise LookupError(unknown("camera", side, ways))
         return np.asarray(ways[side])
 
     def ground(self, floor: float, advance: float) -> Array:
-        """[R | p] (3, 4) that lays squares of the plane y = 0 under the figure, or behind it.
+        """Lay squares of the plane y = 0 under the figure, or behind it: [R | p] (3, 4).
 
         They are a floor in that height [m], over which the figure has advanced [m], or a wall
         behind a figure in a plane.
         """
         if self.normal is None:
             x, _, z = self.extent.centre
-            p = [x, floor, z - advance % (SQUARE * self.unit)]
-            return np.column_stack([np.eye(3), p])
+            laid = np.eye(3, 4)
+            laid[:, 3] = x, floor, z - advance % (SQUARE * self.unit)
+            return laid
         right, up, back = picture_axes(self.normal).T
         return np.column_stack([right, back, -up, self.extent.centre - 0.2 * self.unit * back])
 
     @property
     def words(self) -> str:
-        """What can be seen, in words."""
+        """Say what can be seen."""
         named = [name for name in self.names if name]
         who = self.crowd + (f" ({', '.join(named)})" if named else "")
         return f"{who} with targets for {', '.join(self.effectors.names)}."
 
     @property
     def crowd(self) -> str:
-        """How many figures of what kind there are, in words."""
+        """Say how many figures of which kind there are."""
         what = "human" if self.human else "planar figure" if self.planar else "figure"
         return f"{len(self)} {what}s" if len(self) > 1 else f"A {what}"
 
     def name_at(self, f: int) -> Array:
-        """Where the name of figure f is, from its place: over it, under it, or in a list."""
+        """Place the name of figure f, from its place: over it, under it, or in a list."""
         if self.overlaid:
             x, y = -0.75, 0.65 - 0.16 * f
         else:  # where the figure is not, at rest
             x, y = 0.0, 0.8 if self.human else -1.1 if self._stands else 1.1
         return self.extent.centre + self.unit * np.array([x, y, 0.0])
 
-    def now(
-        self, theta: Array, targets: Array, floor: float | None, advance: float, effector: int,
-        columns: ArrayLike | None, ellipsoid: tuple[ArrayLike, ArrayLike] | None,
-        reach: Sequence[tuple[ArrayLike, float, float]], frames: Frames | None = None,
-    ) -> Now:  # fmt: skip
-        """The moment that `View.show` was told of, with a row for each figure."""
+    def now(self, theta: Array, targets: Array, **about: Unpack[About]) -> Now:
+        """Make the moment that `View.show` is given, with a row per figure.
+
+        ValueError for a shape that does not fit, or what is no number; TypeError for an option
+        that nobody knows.
+        """
+        for name in about:
+            if name not in About.__annotations__:
+                raise TypeError(unknown("option of show", name, About.__annotations__))
         f, n, k = len(self), len(self.tree), len(self.effectors)
+        frames = about.get("frames")
         if frames is None:
-            frames = forward(self.tree, self._each("theta", theta, (f, n)))
-        axes = lengths = None
-        if ellipsoid is not None:
-            axes = self._each("directions of the ellipsoid", ellipsoid[0], (f, 3, 3))
-            lengths = self._each("lengths of the ellipsoid", ellipsoid[1], (f, 3))
-        if not -k <= effector < k:
-            raise ValueError(f"effector must be from 0 to {k - 1}, not {effector}")
+            frames = forward(self.tree, _checked("theta", theta, (f, n)))
+        columns, ellipsoid = about.get("columns"), about.get("ellipsoid")
+        axes, lengths = (None, None) if ellipsoid is None else ellipsoid
+        floor, effector = about.get("floor"), about.get("effector", 0)
+        if not (isinstance(effector, int | np.integer) and -k <= effector < k):
+            raise ValueError(f"effector must be from 0 to {k - 1}, not {shown(effector)}")
+        reach = about.get("reach", ())
         if len(reach) > k:
             raise ValueError(f"{k} effectors have at most {k} chains to show, not {len(reach)}")
         return Now(
-            self._each("positions", frames.positions, (f, n, 3)),
-            self._each("orientations", frames.orientations, (f, n, 3, 3)),
-            self._each("effectors", locate(frames, self.effectors), (f, k, 3)),
-            self._each("targets", targets, (f, k, 3)),
-            self.floor if floor is None else floor,
-            advance,
+            _checked("positions", frames.positions, (f, n, 3)),
+            _per_figure(frames.orientations, (f, n, 3, 3)),
+            _per_figure(locate(frames, self.effectors), (f, k, 3)),
+            _checked("targets", targets, (f, k, 3)),
+            self.floor if floor is None else _number("floor", floor),
+            _number("advance", about.get("advance", 0.0)),
             effector,
-            None if columns is None else self._each("columns", columns, (f, 3, n)),
-            axes,
-            lengths,
-            [(np.asarray(c, dtype=float), inner, outer) for c, inner, outer in reach],
+            None if columns is None else _checked("columns", columns, (f, 3, n)),
+            None if axes is None else _checked("directions of the ellipsoid", axes, (f, 3, 3)),
+            None if lengths is None else _checked("lengths of the ellipsoid", lengths, (f, 3)),
+            [(numbers("reach", centre), inner, outer) for centre, inner, outer in reach],
         )
 
     def arrows(self, columns: Array) -> Array:
-        """The columns of J (..., 3, n) as arrows (..., n, 3) [m]: `SHOWN_AT` for 1 m/rad.
+        """Make arrows (..., n, 3) [m] of columns of J (..., 3, n): `SHOWN_AT` for 1 m/rad.
 
         The column of a slide has no unit: 1 m/m is as long as 1 m/rad is on a human, in the
         proportions of this body.
@@ -262,18 +277,33 @@ class Stage:
         long = np.where(self.tree.slide, SHOWN_AT * self.unit, SHOWN_AT)
         return long[:, None] * columns.swapaxes(-1, -2)
 
-    def _each(self, what: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:
-        """The values, one row a figure; one row for all is given to each."""
-        array = np.asarray(values, dtype=float)
-        if array.shape == shape:
-            return array
-        if array.shape == shape[1:]:
-            return array[None].repeat(shape[0], axis=0)
-        raise ValueError(f"{what} must have the shape {shape[1:]} or {shape}, not {array.shape}")
+
+def _per_figure(array: Array, shape: tuple[int, ...]) -> Array:
+    """Give each figure a row of its own, where there is one for all."""
+    return array if array.shape == shape else array[None].repeat(shape[0], axis=0)
+
+
+def _checked(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:
+    """Make finite numbers, a row per figure; ValueError names what is not, or does not fit."""
+    array = numbers(name, values)
+    if array.shape not in (shape, shape[1:]):
+        fits = f"{shape[1:]} or {shape}"
+        raise ValueError(f"{name} must have the shape {fits}, not {array.shape}")
+    if not finite(array):
+        raise ValueError(f"{name} must be finite, not {array[~np.isfinite(array)][0]}")
+    return _per_figure(array, shape)
+
+
+def _number(name: str, value: Any) -> float:
+    """Make a float of one finite number; ValueError names what is none."""
+    array = numbers(name, value)
+    if array.ndim or not np.isfinite(array):
+        raise ValueError(f"{name} must be one number, and finite, not {shown(value)}")
+    return float(array)
 
 
 def picture_axes(back: Array) -> Array:
-    """The directions right, up and towards the eye, in columns, of an eye that far back."""
+    """Give right, up and towards the eye, in columns (3, 3), of an eye so far back."""
     z = back / max(float(np.linalg.norm(back)), 1e-12)
     up = [0.0, 1.0, 0.0] if abs(z[1]) < 1 - 1e-9 else [0.0, 0.0, -1.0]
     x = np.cross(up, z)
@@ -282,12 +312,12 @@ def picture_axes(back: Array) -> Array:
 
 
 def sides_of(tree: Tree, effectors: Effectors) -> list[str]:
-    """The named sides from which a body can be looked at, the usual one first."""
+    """List the sides from which a body can be looked at, the usual one first."""
     return [*CAMERAS] if plane_of(tree, effectors) is None else [PLANE, *CAMERAS]
 
 
 def plane_of(tree: Tree, effectors: Effectors) -> Array | None:
-    """The normal (3,) of the plane that a body lives in, towards `CAMERAS`; None if in none.
+    """Find the normal (3,) of the plane a body lives in, towards `CAMERAS`; None if in none.
 
     Its hinges turn about the normal; its links and slides lie in the plane.
     """

@@ -22,11 +22,15 @@ class Trail:
         self._gap = gap
 
     def pass_through(self, points: Array, advance: float) -> Array:
-        """Note where the points are; where the marks are now."""
+        """Note where the points are, and give where the marks are now."""
         ground = points + [0.0, 0.0, advance]
         last = np.take_along_axis(self.marks, (self._next - 1)[..., None, None], axis=2)[:, :, 0]
         far = ~(np.linalg.norm(ground - last, axis=-1) < self._gap)  # true also of the first
         self._drop(far, ground)
+        return self.seen(advance)
+
+    def seen(self, advance: float) -> Array:
+        """Give where the marks are when the figure has gone on by so much [m]."""
         return self.marks - [0.0, 0.0, advance]
 
     def clear(self) -> None:
@@ -51,14 +55,14 @@ class Prints(Trail):
         self._forward = np.zeros(count, dtype=bool)
 
     def pass_through(self, points: Array, advance: float) -> Array:
-        """Note where the points are; where the marks are now."""
+        """Note where the points are, and give where the marks are now."""
         if self._before is not None:
             forward = points[..., 2] > self._before[..., 2] + self._gap
             back = points[..., 2] < self._before[..., 2] - self._gap
             self._drop(self._forward & back, self._before + [0.0, 0.0, advance])
             self._forward = np.where(forward | back, forward, self._forward)
         self._before = points.copy()
-        return self.marks - [0.0, 0.0, advance]
+        return self.seen(advance)
 
     def clear(self) -> None:
         """Forget the marks."""
@@ -67,5 +71,5 @@ class Prints(Trail):
 
 
 def feet(effectors: Effectors) -> list[int]:
-    """The effectors that leave footprints."""
+    """List the effectors that leave footprints."""
     return [i for i, name in enumerate(effectors.names) if name.startswith("foot")]

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from ikteach.arrays import Array
 from ikteach.motion.anatomy import Anatomy
 from ikteach.view import charts
-from ikteach.view.stage.skin import BLUE
+from ikteach.view.stage.colours import BLUE
 from ikteach.view.widgets.picture import png_of
 
 

@@ -12,7 +12,8 @@ from ikteach.motion.reachable import annulus
 from ikteach.solvers import SOLVERS, ellipsoid
 from ikteach.view.live.live import Live
 from ikteach.view.live.panel import Does, Panel, button, choice, dropdown, slider, tick_box
-from ikteach.view.stage.stage import CAMERAS, LAYERS
+from ikteach.view.stage.layers import LAYERS
+from ikteach.view.stage.stage import CAMERAS
 from ikteach.view.tools.session_panels import LABEL, LOOK, Guard
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets.ball import Ball

@@ -1,6 +1,5 @@
 """Where one looks from: the named sides, free turning, perspective and parallel projection."""
 
-from collections.abc import Callable
 from math import atan2, cos, degrees, hypot, radians, sin, tan
 
 import numpy as np
@@ -27,17 +26,15 @@ class Cameras:
         self._turning = {self.perspective: renderer.controls[0]}
         self._bound(renderer.controls[0])
         self.parallel: three.OrthographicCamera | None = None
-        self._tell: list[Callable[[], None]] = []
-        self._watch(self.perspective)
 
     @property
     def current(self) -> three.Camera:
-        """The camera in use."""
+        """Give the camera in use."""
         return self.renderer.camera
 
     @property
     def orthographic(self) -> bool:
-        """Whether the projection is parallel; may be set."""
+        """Tell whether the projection is parallel; may be set."""
         return self.current is self.parallel
 
     @orthographic.setter
@@ -47,12 +44,14 @@ class Cameras:
         before = self.current
         if on and self.parallel is None:
             self.parallel = three.OrthographicCamera(
-                -1, 1, 1, -1, near=-self._far, far=self._far, position=before.position,
+                *(-1, 1, 1, -1),
+                near=-self._far,
+                far=self._far,
+                position=before.position,
                 quaternion=before.quaternion,
-            )  # fmt: skip
+            )
             self._turning[self.parallel] = three.OrbitControls(controlling=self.parallel)
             self._bound(self._turning[self.parallel])
-            self._watch(self.parallel)
             # The scene listens to what is in it, so that a turned camera has it drawn again.
             scene = self.renderer.scene
             scene.children = [*scene.children, self.parallel]
@@ -67,33 +66,26 @@ class Cameras:
         self.put(self._stage.eye(side, self._aspect), self._stage.extent.centre)
 
     def turn(self, azimuth: float, elevation: float, distance: float | None = None) -> None:
-        """Look from so many degrees to the left of the front and above the floor."""
+        """Look from azimuth and elevation [degrees]: left of the front, and above the floor."""
         a, e = radians(azimuth), radians(min(max(elevation, -89.0), 89.0))
         r = self.distance if distance is None else distance
         target = np.asarray(self._turning[self.current].target)
         away = r * np.array([sin(a) * cos(e), sin(e), cos(a) * cos(e)])
         self.put(target + away, target)
 
-    def on_turn(self, tell: Callable[[], None]) -> None:
-        """Call tell() whenever the camera has been turned: with the mouse, by keys, by `turn`."""
-        self._tell.append(tell)
-
     def _bound(self, turning: three.OrbitControls) -> None:
         """Let the wheel come no closer than can be drawn, and go no farther than can be seen."""
         turning.minDistance, turning.maxDistance = self._usual / 20, 10 * self._usual
 
-    def _watch(self, camera: three.Camera) -> None:
-        camera.observe(lambda _: [tell() for tell in self._tell], "position")
-
     @property
     def angles(self) -> tuple[float, float]:
-        """Azimuth and elevation of the camera [degrees]."""
+        """Give azimuth and elevation of the camera [degrees]."""
         x, y, z = self._away
         return degrees(atan2(x, z)), degrees(atan2(y, hypot(x, z)))
 
     @property
     def distance(self) -> float:
-        """How far the camera is from what it looks at [m]."""
+        """Measure how far the camera is from what it looks at [m]."""
         return float(np.linalg.norm(self._away))
 
     @property
@@ -116,12 +108,12 @@ class Cameras:
 
 
 def looking(eye: Array, at: Array) -> tuple[float, float, float, float]:
-    """The quaternion (x, y, z, w) of a camera at `eye` that looks at `at` with y upwards."""
+    """Turn a camera at `eye` to look at `at` with y upwards: quaternion (x, y, z, w)."""
     return quaternion(picture_axes(eye - at))
 
 
 def quaternion(R: Array) -> tuple[float, float, float, float]:
-    """The quaternion (x, y, z, w) of a rotation matrix R (3, 3)."""
+    """Make a quaternion (x, y, z, w) of a rotation matrix R (3, 3)."""
     # The eigenvector of 1 of this symmetric matrix; stable for every rotation.
     xx, xy, xz, yx, yy, yz, zx, zy, zz = R.ravel()
     K = np.array(

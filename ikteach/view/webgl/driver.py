@@ -68,12 +68,12 @@ class Driver(Living, anywidget.AnyWidget):
 
     @property
     def ready(self) -> bool:
-        """Whether a page looks and can take a frame: few are under way to it."""
+        """Tell whether a page looks and can take a frame: few are under way to it."""
         return self.seen and self.sent - self.drawn < AHEAD
 
     @property
     def unwatched(self) -> bool:
-        """Whether nobody looks: no page yet, or frames are under way and no sign has come back."""
+        """Tell whether nobody looks: no page yet, or no sign has come back of many frames."""
         waiting = self.sent - self.drawn >= AHEAD
         return not self.seen or (waiting and monotonic() - self.heard > PATIENCE)
 

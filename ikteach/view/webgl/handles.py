@@ -7,7 +7,7 @@ import pythreejs as three
 import traitlets
 from ipywidgets import Widget, widget_serialization
 
-from ikteach.view.stage.skin import SKY
+from ikteach.view.stage.colours import SKY
 from ikteach.view.webgl.positions import Positions
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets.actor import Actor, in_words

@@ -1,73 +1,78 @@
 """The pythreejs objects that a scene is made of."""
 
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 import pythreejs as three
 
-from ikteach.arrays import ArrayLike
 from ikteach.markup import brief
-from ikteach.view.stage.skin import EFFECTOR_COLOURS
-from ikteach.view.stage.stage import SQUARE
+from ikteach.view.stage.colours import paper
+from ikteach.view.stage.forms import Ball, Box, Form, Grid, Label, Mesh
 
 
 def node(children: Sequence[three.Object3D] = ()) -> three.Group:
-    """Something that the driver moves: its matrix is given, not made from position and so on."""
+    """Make something that the driver moves: its matrix is given, not made from position."""
     return three.Group(children=list(children), matrixAutoUpdate=False)
 
 
 def lights() -> list[three.Light]:
-    """Light from all around, and some from above."""
+    """Make light from all around, and some from above."""
     # A light's target and shadow are given here because pythreejs would else make them in the page
     # and choke on their echo from the kernel ("Error setting state: t.on is not a function").
     shadow = three.DirectionalLightShadow(camera=three.OrthographicCamera(-1, 1, 1, -1))
     return [
         three.AmbientLight(color="#ffffff", intensity=0.55),
         three.DirectionalLight(
-            color="#ffffff", intensity=0.6, position=[2, 4, 3],
-            target=three.Object3D(), shadow=shadow,
+            color="#ffffff",
+            intensity=0.6,
+            position=[2, 4, 3],
+            target=three.Object3D(),
+            shadow=shadow,
         ),
-    ]  # fmt: skip
-
-
-def grid(unit: float, dark: bool) -> three.GridHelper:
-    """The squares of the floor."""
-    middle, lines = ("#5c6875", "#3a434d") if dark else ("#9aa5b1", "#cbd2d9")
-    return three.GridHelper(6 * unit, round(6 / SQUARE), middle, lines)
-
-
-def marks(names: Sequence[str], unit: float, sets: int) -> list[three.Mesh]:
-    """Sets of targets, one for each name: a ball, or a box for what is on the right."""
-    side = 1.56 * (radius := 0.045 * unit)
-    box, ball = (
-        three.BoxBufferGeometry(side, side, side),
-        three.SphereBufferGeometry(radius, 16, 12),
-    )
-    looks = [
-        three.MeshLambertMaterial(color=effector_colour(i), transparent=True, opacity=0.85)
-        for i in range(len(names))
     ]
+
+
+def grid(form: Grid, dark: bool) -> three.GridHelper:
+    """Make the squares of the floor."""
+    looks = paper(dark)
+    return three.GridHelper(form.side, form.squares, looks.middle, looks.line)
+
+
+def marks(mesh: Mesh) -> list[three.Mesh]:
+    """Make each ball or box of a mesh a thing of its own; those that look alike share it."""
+    shape = cache(_geometry)
+
+    @cache
+    def look(colour: str) -> three.Material:
+        return three.MeshLambertMaterial(color=colour, transparent=True, opacity=mesh.opacity)
+
     return [
-        three.Mesh(box if name.endswith(".r") else ball, look, matrixAutoUpdate=False)
-        for _ in range(sets)
-        for name, look in zip(names, looks, strict=True)
+        three.Mesh(shape(piece.form), look(piece.colour), matrixAutoUpdate=False)
+        for piece in mesh.pieces
     ]
 
 
-def labels(
-    text: str, colour: str, height: float, places: Sequence[ArrayLike]
-) -> list[three.Sprite]:
-    """The same words at each of these places, which always face the camera."""
-    text = brief(text)
-    words = three.TextTexture(string=text, color=colour, size=64)  # on a square as wide as it
-    look = three.SpriteMaterial(map=words, transparent=True, depthWrite=False)
-    width = height * max(0.55 * len(text), 1)
-    return [
-        three.Sprite(look, position=tuple(np.asarray(at, dtype=float)), scale=(width, width, 1))
-        for at in places
-    ]
+def _geometry(form: Form) -> three.BufferGeometry:
+    if isinstance(form, Box):
+        return three.BoxBufferGeometry(*[2 * form.half] * 3)
+    if isinstance(form, Ball):
+        return three.SphereBufferGeometry(form.radii[0], 16, 12)
+    raise TypeError(f"nobody can take hold of {form}")
 
 
-def effector_colour(i: int) -> str:
-    """The colour of effector i and its target."""
-    return EFFECTOR_COLOURS[i % len(EFFECTOR_COLOURS)]
+def labels(labels: Sequence[Label]) -> list[three.Sprite]:
+    """Make words that always face the camera; the same words share how they look."""
+
+    @cache
+    def look(text: str, colour: str) -> three.SpriteMaterial:
+        words = three.TextTexture(string=text, color=colour, size=64)  # as wide as it is high
+        return three.SpriteMaterial(map=words, transparent=True, depthWrite=False)
+
+    sprites = []
+    for at, text, colour, height in labels:
+        short = brief(text)
+        width = height * max(0.55 * len(short), 1)
+        place = tuple(np.asarray(at, dtype=float))
+        sprites.append(three.Sprite(look(short, colour), position=place, scale=(width, width, 1)))
+    return sprites

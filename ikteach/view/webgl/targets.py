@@ -9,10 +9,10 @@ import traitlets
 
 from ikteach.arrays import Array, ArrayLike
 from ikteach.checks import numbers
+from ikteach.view.stage.colours import effector_colour
 from ikteach.view.stage.lengths import Lengths, digits_of, round_step
 from ikteach.view.stage.stage import View
 from ikteach.view.webgl.handles import Handles
-from ikteach.view.webgl.objects import effector_colour
 from ikteach.view.webgl.positions import Keeper, Moves, Positions
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import doors

@@ -78,11 +78,11 @@ def test_columns_are_of_the_effector_and_by_the_way_that_are_chosen():
     bench = ColumnPoser(figure)
     bench.controls["effector"].value = "foot.r"
     J = jacobian(figure.tree, forward(figure.tree, bench.theta()), figure.effectors)[3:6]
-    assert np.allclose(bench.scene._last["columns"], J)
+    assert np.allclose(bench.scene.now.columns, J)
     bench.controls["way"].value = "finite differences"
     bench.controls["h"].value = 0.3
     wide = by_differences(figure.tree, bench.theta(), figure.effectors, h=0.3)[3:6]
-    assert np.allclose(bench.scene._last["columns"], wide)
+    assert np.allclose(bench.scene.now.columns, wide)
     assert abs(wide - J).max() > 1e-3
     bench.close()
 

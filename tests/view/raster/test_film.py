@@ -11,8 +11,8 @@ from ikteach.body.rotation import sticks
 from ikteach.motion.live.session import Session
 from ikteach.view.raster.film import Film, film, shot, shots
 from ikteach.view.raster.raycast import Eye, box, draw, ellipsoid, rod, square
-from ikteach.view.stage.skin import EFFECTOR_COLOURS, SHIRT, SKIN, TROUSERS
-from ikteach.view.webgl.scene import CAMERAS
+from ikteach.view.stage.colours import EFFECTOR_COLOURS, SHIRT, SKIN, TROUSERS
+from ikteach.view.stage.stage import CAMERAS
 
 STILL = np.eye(4)[None]
 RED, BLUE = "#ff0000", "#0000ff"

@@ -1,0 +1,111 @@
+"""Layers that are always drawn: floor, targets, figures, and rods from effectors to targets."""
+
+import numpy as np
+
+from ikteach.arrays import Array
+from ikteach.body.rotation import sticks, transforms
+from ikteach.view.stage.colours import GREY, SHIRT, effector_colour
+from ikteach.view.stage.forms import Ball, Box, Form, Grid, Label, Mesh, Piece, Rod, boxed
+from ikteach.view.stage.layer import Layer, hidden, upright
+from ikteach.view.stage.stage import SQUARE, Now
+
+FLOOR = 6.0  # side of the floor under a human [m]
+FINE, PLAIN = (10, 3), (8, 2)  # how the balls of one figure are cut, and those of several
+LETTERS = 16  # of a name over a head
+
+
+class Floor(Layer):
+    """Squares under the figures, or behind those that live in a plane."""
+
+    name = "floor"
+
+    def build(self) -> None:
+        """Lay out one grid."""
+        self.add([Grid(FLOOR * self.stage.unit, round(FLOOR / SQUARE))], [GREY])
+
+    def place(self, now: Now) -> Array:
+        """Let the floor glide back under the figures."""
+        return self.stage.ground(now.floor, now.advance)[None]
+
+
+class Targets(Layer):
+    """Where effectors are to come: balls, boxes on the right. Overlaid figures share them."""
+
+    name = "targets"
+
+    def build(self) -> None:
+        """Make a mark for each target of each figure."""
+        stage, radius = self.stage, 0.045 * self.stage.unit
+        self.sets = 1 if stage.overlaid else len(stage)
+        marks: list[Form] = [
+            Box(0.78 * radius) if boxed(name) else Ball((0, 0, 0), (radius,) * 3)
+            for name in stage.effectors.names
+        ]
+        colours = [effector_colour(i) for i in range(len(marks))]
+        self.add(marks * self.sets, colours, opacity=0.85, single=True)
+
+    def place(self, now: Now) -> Array:
+        """Put the marks where the targets are."""
+        return upright((now.targets + self.stage.places[:, None])[: self.sets])
+
+
+class Figures(Layer):
+    """Figures with their skin and their names: a row per figure, then one per joint."""
+
+    name = "figures"
+
+    def build(self) -> None:
+        """Make a mesh per figure; one may look through all but the first that are overlaid."""
+        stage = self.stage
+        f, n = len(stage), len(stage.tree)
+        self.rows = f + f * n
+        self._grounds = upright(stage.places)
+        cut = FINE if f == 1 else PLAIN
+        for i, name in enumerate(stage.names):
+            row: dict[str | None, int] = {None: i}
+            row |= {joint: f + i * n + j for j, joint in enumerate(stage.tree.names)}
+            pieces = [Piece(row[joint], form, colour) for joint, form, colour in stage.skin]
+            pieces = [self._dressed(piece, i) for piece in sorted(pieces, key=lambda one: one.row)]
+            self.meshes.append(Mesh(pieces, 0.5 if stage.overlaid and i else 1.0, cut=cut))
+            if name:
+                at, text = stage.places[i] + stage.name_at(i), _brief(name)
+                self.labels.append(Label(at.tolist(), text, self._shirt(i), 0.13 * stage.unit))
+
+    def place(self, now: Now) -> Array:
+        """Put each part where its joint is."""
+        joints = transforms(now.orientations, now.positions + self.stage.places[:, None])
+        return np.concatenate([self._grounds, joints.reshape(-1, 3, 4)])
+
+    def _dressed(self, piece: Piece, i: int) -> Piece:
+        return piece._replace(colour=self._shirt(i)) if piece.colour == SHIRT else piece
+
+    def _shirt(self, i: int) -> str:
+        """Choose the colour that figure i wears."""
+        return SHIRT if len(self.stage) == 1 else effector_colour(i)
+
+
+class Gaps(Layer):
+    """A rod from each effector to its target: what is left of the way."""
+
+    name = "gaps"
+
+    def build(self) -> None:
+        """Make a rod for each effector of each figure."""
+        rod = Rod((0, 0, 0), (0, 1, 0), 0.006 * self.stage.unit)
+        self.add([rod] * len(self.stage) * len(self.stage.effectors), [GREY])
+
+    def place(self, now: Now) -> Array:
+        """Stretch the rods; one that is too short to be seen is hidden."""
+        places = self.stage.places[:, None]
+        rods = sticks(now.effectors + places, now.targets + places)
+        left = rods[..., 1]  # of the way
+        short = np.vecdot(left, left) < (1e-3 * self.stage.unit) ** 2
+        return hidden(rods, short).reshape(-1, 3, 4)
+
+
+BASICS = (Floor, Targets, Figures, Gaps)
+
+
+def _brief(name: str) -> str:
+    """Shorten a name to fit over a head."""
+    return name if len(name) <= LETTERS else f"{name[: LETTERS - 1]}…"
