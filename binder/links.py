@@ -37,7 +37,7 @@ def lecture(root: Path = ROOT) -> dict[str, str]:
 
 
 def on_binder(address: str, page: str) -> str:
-    """The link that has mybinder.org start the repository, built if need be, with a page open."""
+    """Make the link that has mybinder.org open a page of the repository."""
     host, path = repository(address)
     if host not in PROVIDERS:
         source = f"git/{quote(address, safe='')}"
@@ -49,7 +49,7 @@ def on_binder(address: str, page: str) -> str:
 
 
 def on_hub(hub: str, address: str, page: str) -> str:
-    """The link that fetches the repository for the student, or what is new of it, and opens a page.
+    """Make the link that fetches the repository and opens a page.
 
     nbgitpuller does it, which the hub must have; what a student has changed it keeps.
     """
@@ -60,7 +60,7 @@ def on_hub(hub: str, address: str, page: str) -> str:
 
 
 def pull(address: str, page: str) -> str:
-    """What nbgitpuller is asked on the student's own server; it names the folder by the address."""
+    """Make nbgitpuller's query; it names the folder by the address."""
     folder = address.rstrip("/").rpartition("/")[2].removesuffix(".git")
     application, way, path = page.split("/", 2)
     query = urlencode({"repo": address, "urlpath": f"{application}/{way}/{folder}/{path}"})
@@ -68,7 +68,7 @@ def pull(address: str, page: str) -> str:
 
 
 def repository(address: str) -> tuple[str, str]:
-    """The host of a repository's address, and its path there without `.git`."""
+    """Split a repository's address into host and path, without `.git`."""
     parts = urlsplit(address)
     path = parts.path.strip("/").removesuffix(".git")
     if parts.scheme not in ("http", "https") or not parts.netloc or "/" not in path:
@@ -78,7 +78,7 @@ def repository(address: str) -> tuple[str, str]:
 
 
 def markdown(link: Callable[[str], str], start: str, root: Path = ROOT) -> str:
-    """What opens the start page, each chapter, and the pages for a lecture, as three paragraphs."""
+    """List the links to start, chapters and lecture, in three paragraphs."""
     pages = chapters(root)
     first = next(iter(pages.values()))
     rows = {"Chapters": pages, "For a lecture": lecture(root)}

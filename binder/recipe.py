@@ -25,7 +25,7 @@ class Recipe(NamedTuple):
 
 
 def recipe(repository: Path) -> Recipe:
-    """What repo2docker would build of a folder: it prints that, and needs no Docker to do so."""
+    """Ask repo2docker what it would build of a folder, without Docker."""
     command = [sys.executable, "-m", "repo2docker", "--no-build", "--debug", str(repository)]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     python = re.search(r"python=([\d.]+)", done.stderr)
@@ -36,7 +36,7 @@ def recipe(repository: Path) -> Recipe:
 
 
 def clone(source: Path, folder: Path) -> None:
-    """A clean clone of what is committed, on a branch of its own."""
+    """Clone what is committed, on a branch of its own."""
     for command in (
         ["git", "clone", "--quiet", str(source), str(folder)],
         ["git", "-C", str(folder), "switch", "--quiet", "--force-create", "main"],
@@ -63,7 +63,7 @@ class Build:
             "REPO_DIR": str(self.home),
             "KERNEL_PYTHON_PREFIX": str(self.prefix),
             "PATH": f"{self.prefix / 'bin'}{os.pathsep}{os.environ['PATH']}",
-            "UV_CACHE_DIR": told([*UV, "cache", "dir"]),  # which is not in that home
+            "UV_CACHE_DIR": output([*UV, "cache", "dir"]),  # which is not in that home
         }
 
     def steps(self, pip: bool = False) -> Iterator[str]:
@@ -95,7 +95,7 @@ class Build:
         environment = os.environ | {"PYENV_VERSION": python}
         if subprocess.run([*make, python], env=environment, capture_output=True).returncode != 0:
             subprocess.run([*make, sys.executable], check=True)
-        return told([str(self.prefix / "bin" / "python"), "-V"])
+        return output([str(self.prefix / "bin" / "python"), "-V"])
 
     def _copy(self, what: str) -> None:
         start, end = (Path(word) for word in what.replace("${REPO_DIR}", str(self.home)).split())
@@ -116,6 +116,6 @@ class Build:
         return done.stdout
 
 
-def told(command: list[str]) -> str:
-    """What a command prints."""
+def output(command: list[str]) -> str:
+    """Run a command, and give what it prints."""
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()

@@ -71,7 +71,7 @@ class Server:
         raise RuntimeError(f"the server did not start:\n{self.log.read_text()[-4000:]}")
 
     def ask(self, path: str, method: str = "GET", **headers: str) -> Any:
-        """The answer to a request, from JSON; with the token, if no other headers are given."""
+        """Ask for JSON; with the token, if no other headers are given."""
         headers = headers or {"Authorization": f"token {self.token}"}
         request = urllib.request.Request(self.address + path, headers=headers, method=method)
         with urllib.request.urlopen(request, timeout=PATIENCE) as answer:
@@ -117,7 +117,7 @@ class Visit:
             route.abort()
 
     def heading(self) -> str:
-        """The first heading, once it is seen."""
+        """Wait for the first heading."""
         return self.page.locator(HEADING).first.inner_text().removesuffix("¶").strip()
 
     def run(self, cell: str) -> None:
@@ -146,7 +146,7 @@ class Visit:
 
 @contextmanager
 def serving(built: Build) -> Iterator[Server]:
-    """A server that ends with the block."""
+    """Start a server that ends with the block."""
     server = Server(built)
     try:
         server.wait()

@@ -23,7 +23,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 Name = str | os.PathLike[str]
-T = TypeVar("T")
+Result = TypeVar("Result")
 
 DEEPEST = 60  # levels of lists and dictionaries in a file that we read
 LEFT_BEHIND = 3600.0  # [s] a draft that nobody has touched for so long is nobody's
@@ -62,14 +62,17 @@ def quoted(value: Any) -> str:
 
 
 def bounded(words: str, most: int = 400) -> str:
-    """Give a text of at most `most` letters; what is too much is left out of its middle."""
+    """Shorten a text to at most `most` letters.
+
+    What is too much is left out of its middle.
+    """
     half = (most - 3) // 2
     short = words if len(words) <= most else f"{words[:half]} … {words[-half:]}"
     return whole_characters(short)
 
 
 def whole_characters(text: str) -> str:
-    """Give a text without half characters, which can be written and sent nowhere."""
+    """Replace half characters, which can be written nowhere."""
     return HALF.sub("?", text)
 
 
@@ -77,10 +80,10 @@ def whole_characters(text: str) -> str:
 
 
 def read_text(path: Name, most: int) -> str:
-    """Read a text file of at most `most` bytes, in UTF-8 or, with its mark, in UTF-16.
+    """Read a text file of at most `most` bytes.
 
-    ValueError says "it is …", for a sentence that begins with the file's name; OSError where it
-    cannot be read at all.
+    In UTF-8 or, with its mark, in UTF-16. ValueError says "it is …", for a sentence that begins
+    with the file's name; OSError where it cannot be read at all.
     """
     data = read_bytes(path, most)
     for sign, what in SIGNS.items():
@@ -97,7 +100,7 @@ def read_text(path: Name, most: int) -> str:
 
 
 def read_bytes(path: Name, most: int) -> bytes:
-    """Read a file of at most `most` bytes; ValueError if it has more, OSError."""
+    """Read a file; ValueError beyond `most` bytes, OSError."""
     path = Path(path)
     try:
         info, data = os.stat(path), b""
@@ -118,10 +121,10 @@ def read_bytes(path: Name, most: int) -> bytes:
 
 
 def read_json(path: Name, most: int) -> Any:
-    """Read a JSON file of at most `most` bytes; NaN and Infinity come as text.
+    """Read a JSON file of at most `most` bytes.
 
-    All its numbers are finite, its texts can be written again, and it is not nested deeper than
-    `DEEPEST`. ValueError says "it is …", OSError as `read_text`.
+    NaN and Infinity come as text. All its numbers are finite, its texts can be written again, and
+    it is not nested deeper than `DEEPEST`. ValueError says "it is …", OSError as `read_text`.
     """
     text = read_text(path, most)
     try:
@@ -164,17 +167,18 @@ def _check_sound(content: Any) -> None:
 # Writing.
 
 
-def plain(value: Any) -> Any:
-    """Give a value as Python's own and so that every reader of JSON can read it: no NaN, in words.
+def jsonable(value: Any) -> Any:
+    """Make a value that every reader of JSON reads.
 
-    Arrays become lists, and what JSON does not know becomes a text of at most 400 letters.
+    Without NaN, and in Python's own types. Arrays become lists, and what JSON does not know becomes
+    a text of at most 400 letters.
     """
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if isinstance(value, dict):
-        return {bounded(str(name)): plain(one) for name, one in value.items()}
+        return {bounded(str(name)): jsonable(one) for name, one in value.items()}
     if isinstance(value, list | tuple):
-        return [plain(one) for one in value]
+        return [jsonable(one) for one in value]
     if isinstance(value, bool) or value is None:
         return value
     if isinstance(value, int | float) and abs(value) < 1e300:  # neither NaN nor infinite
@@ -187,14 +191,17 @@ def plain(value: Any) -> Any:
 
 
 def write_whole(path: Name, content: str | bytes, *, overwrite: bool = False) -> None:
-    """Write a file in one step; FileExistsError if it is there, unless `overwrite`; OSError."""
+    """Write a file in one step.
+
+    FileExistsError if it is there, unless `overwrite`; OSError.
+    """
     with drafted(path, overwrite=overwrite) as draft:
         draft.write_bytes(content.encode() if isinstance(content, str) else content)
 
 
 @contextmanager
 def drafted(path: Name, *, overwrite: bool = False) -> Iterator[Path]:
-    """Give an empty draft to write to, which gets the name `path` when the block ends well.
+    """Give a draft that becomes `path` when the block ends.
 
     Otherwise it is removed. FileExistsError if there is a file of that name, unless `overwrite`;
     OSError if it cannot be written, and then the old one is as it was.
@@ -236,7 +243,10 @@ def _check_place(path: Path, overwrite: bool) -> None:
 
 
 def publish(draft: Path, path: Path, *, overwrite: bool) -> None:
-    """Give the draft its name, in one step; the errors are those of `drafted`."""
+    """Give the draft its name, in one step.
+
+    The errors are those of `drafted`.
+    """
     file = os.open(draft, os.O_RDWR)
     try:
         os.fsync(file)  # a full disk in the network is told of only here
@@ -276,7 +286,7 @@ def _sweep(path: Path) -> None:
                         os.unlink(entry)
 
 
-def _patiently(act: Callable[[], T]) -> T:
+def _patiently(act: Callable[[], Result]) -> Result:
     """Do it; on Windows again for a while, where another program has the file open just now."""
     end = time.monotonic() + 1.0
     while True:
@@ -289,7 +299,7 @@ def _patiently(act: Callable[[], T]) -> T:
 
 
 def _said(error: OSError, path: Path, done: str) -> OSError:
-    """The same error, of Python's own kind, as a sentence."""
+    """Make the same error, of Python's own kind, with a sentence."""
     kind = next(one for one in type(error).__mro__ if one.__module__ == "builtins")
     assert issubclass(kind, OSError)
     return kind(f"{bounded(path.name, 80)} cannot be {done} ({error.strerror or error})")
@@ -300,11 +310,11 @@ def _said(error: OSError, path: Path, done: str) -> OSError:
 
 @contextmanager
 def alone(path: Name) -> Iterator[None]:
-    """Let one process after the other change `path`, each of which must ask here.
+    """Let one process after the other change `path`.
 
-    TimeoutError if another one does not come to an end; OSError if nothing can be written there.
-    The lock is the system's, so that it ends with whoever holds it; where there is none (in the
-    browser, on some disks in a network), it is a file that only one can make.
+    Each must ask here. TimeoutError if another one does not come to an end; OSError if nothing can
+    be written there. The lock is the system's, so that it ends with whoever holds it; where there
+    is none (in the browser, on some disks in a network), it is a file that only one can make.
     """
     path = Path(path)
     lock = path.with_name(f".{path.name}.lock")
@@ -330,7 +340,7 @@ def alone(path: Name) -> Iterator[None]:
         os.close(file)
 
 
-def _wait(act: Callable[[], T], path: Path) -> T:
+def _wait(act: Callable[[], Result], path: Path) -> Result:
     """Try until no other process is in the way."""
     end = time.monotonic() + PATIENCE
     while True:

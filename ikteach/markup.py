@@ -13,19 +13,21 @@ _LOOK_ALIKE = str.maketrans("$\\", "＄＼")
 
 
 class Markup(str):
-    """HTML. What is put into it or added to it is escaped, unless it is Markup itself.
+    """HTML that escapes whatever is put into it.
 
-    >>> Markup("<b>{}</b>").format("a < b")
-    '<b>a &lt; b</b>'
+    But for Markup itself. >>> Markup("<b>{}</b>").format("a < b") '<b>a &lt; b</b>'
     """
 
     def format(self, *values: Any, **named: Any) -> "Markup":
-        """Put values into the places of this template; numbers take formats, `{:.2f}`."""
+        """Put values into the places of this template.
+
+        Numbers take formats, `{:.2f}`.
+        """
         safe = {name: _escaped(value) for name, value in named.items()}
         return Markup(super().format(*map(_escaped, values), **safe))
 
     def join(self, parts: Iterable[Any]) -> "Markup":
-        """Put the parts one after the other, with this between them."""
+        """Join the parts, with this between them."""
         return Markup(super().join(str(_escaped(part)) for part in parts))
 
     def __add__(self, other: str) -> "Markup":
@@ -33,34 +35,40 @@ class Markup(str):
 
 
 def escaped(text: object) -> Markup:
-    """HTML that shows this text as it is; Markup is left alone."""
+    """Turn text into HTML that shows it; Markup stays."""
     return text if isinstance(text, Markup) else Markup(html.escape(visible(str(text))))
 
 
 def visible(text: str) -> str:
-    """The text on one line, a space for whatever would not be seen but act."""
+    """Put text on one line, without what cannot be seen."""
     return _UNSEEN.sub(" ", text)
 
 
 def brief(text: str, most: int = LONGEST) -> str:
-    """The text as a label has room for it: on one line, and cut where it is long."""
+    """Shorten text to one line, as a label has room."""
     seen = visible(text)
     return seen if len(seen) <= most else f"{seen[: most - 1]}…"
 
 
 def plain(text: str) -> str:
-    """A label for ipywidgets, which would set what looks like TeX as a formula."""
+    """Make a label for ipywidgets.
+
+    They would set what looks like TeX as a formula.
+    """
     return brief(text).translate(_LOOK_ALIKE)
 
 
 def as_label(name: object) -> str:
-    """A label for matplotlib, which would set $…$ as a formula and leave out a leading _."""
+    """Make a label for matplotlib.
+
+    It would set $…$ as a formula and leave out a leading _.
+    """
     text = brief(str(name), SHORT).replace("$", r"\$")
     return f" {text}" if text.startswith("_") else text
 
 
 def untouched(content: Markup) -> Markup:
-    """The HTML in a box in which no page looks for TeX."""
+    """Box HTML in which no page looks for TeX."""
     return Markup('<div class="tex2jax_ignore mathjax_ignore">{}</div>').format(content)
 
 

@@ -1,4 +1,4 @@
-"""Makes `tests/` and `tests/bench/` places to import from, for every room."""
+"""Makes `tests/tools/` and `tests/bench/` places to import from, for every room."""
 
 import sys
 from pathlib import Path
@@ -11,7 +11,7 @@ settings.register_profile("ikteach", deadline=None, derandomize=True, print_blob
 settings.load_profile("ikteach")
 
 HERE = Path(__file__).parent
-sys.path += [str(HERE), str(HERE / "bench")]
+sys.path += [str(HERE / "tools"), str(HERE / "bench")]
 
 
 @pytest.fixture(autouse=True)

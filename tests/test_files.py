@@ -179,7 +179,7 @@ def test_words_are_bounded_and_can_be_written():
 
     value = {"a": np.float64(0.1), 3: np.array([1, np.nan, np.inf]), "t": (1, None, True),
              "big": 10**400, "odd": Mute(), "half": "\ud800", "bool": np.bool_(True)}  # fmt: skip
-    plain = files.plain(value)
+    plain = files.jsonable(value)
     assert json.loads(json.dumps(plain, allow_nan=False)) == plain
     assert plain["a"] == 0.1
     assert plain["3"] == [1.0, "nan", "inf"]

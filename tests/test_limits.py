@@ -6,8 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-LIMITS = Path(__file__).with_name("limits.py")
-ALL = sorted(path.stem for path in (LIMITS.parents[1] / "notebooks").glob("*.ipynb"))
+LIMITS = Path(__file__).parent / "tools" / "limits.py"
+ALL = sorted(path.stem for path in (LIMITS.parents[2] / "notebooks").glob("*.ipynb"))
 # The workbench has nearly everything; IKTEACH_FULL=1 runs every chapter.
 CHAPTERS = ALL if os.environ.get("IKTEACH_FULL") else ["09_workbench"]
 TELLS = "there is no PyAV for the Python that runs in the browser; save the session"

@@ -113,7 +113,7 @@ load_subconfig(str(OWNERS))
 
 
 def chosen(kind, value):
-    """The class that an authenticator or a spawner is, and what is set for it and its bases."""
+    """Find the class of an authenticator or a spawner, and its settings."""
     known = {entry.name: entry for entry in entry_points(group=f"jupyterhub.{kind}s")}
     if isinstance(value, str):
         with suppress(ImportError, ValueError):  # then it stays a word

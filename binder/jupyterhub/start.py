@@ -7,15 +7,14 @@ from pathlib import Path
 
 from jupyterhub.singleuser import main
 
-import ikteach
-from ikteach.publish.delivery import deliver, find_course, told
+from ikteach.publish.delivery import deliver, find_course, report
 
 FOLDER = Path.home() / "ikteach-course"
 
 os.umask(0o077)  # what a student answers is for no other student to read
 try:
-    course = find_course(Path(ikteach.__file__).resolve().parent)
-    print(*told(deliver(course.notebooks, FOLDER), FOLDER), sep="\n", flush=True)
+    course = find_course()
+    print(*report(deliver(course.notebooks, FOLDER), FOLDER), sep="\n", flush=True)
     FOLDER.chmod(0o700)  # what was there before, too
 except OSError as error:  # a full disk, for instance: what the student has can still be opened
     print(f"The course could not be brought up to date: {error}", file=sys.stderr, flush=True)

@@ -28,30 +28,33 @@ import numpy as np
 from ikteach.course import record
 from ikteach.course.deadline import TooLongError, deadline
 from ikteach.course.notice import LOOK, Mood, box, paragraph
-from ikteach.course.untouched import Unpatched, untouched
+from ikteach.course.untouched import Unpatched, restoring
 from ikteach.files import bounded
 from ikteach.markup import Markup
 from ikteach.names import unknown
 
 NOT_YET = "Not yet"
 SECONDS = 5.0  # what a check may take in all
-LONGEST = 500  # letters of a sentence
+LONGEST_SENTENCE = 500  # letters of a sentence
 
-Shape = tuple[int, ...]
-Returns = Shape | type | Callable[..., Shape] | None
+AnswerShape = tuple[int, ...]
+Returns = AnswerShape | type | Callable[..., AnswerShape] | None
 
 
 class WrongError(Exception):
-    """The answer is wrong; the message says how, in one sentence."""
+    """A wrong answer; the message says how, in one sentence."""
 
 
 class NotYetError(Exception):
-    """There is no answer yet; the message may say by what we tell."""
+    """No answer yet; the message may say more."""
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a check found; true only if it passed. `hint` is empty when there is none to give."""
+    """The finding of a check, true only if it passed.
+
+    `hint` is empty when there is none to give.
+    """
 
     key: str
     passed: bool
@@ -63,7 +66,10 @@ class Verdict:
 
     @property
     def mood(self) -> Mood:
-        """How to set it: an exercise that was not begun is no failure."""
+        """Choose how to set it.
+
+        An exercise that was not begun is no failure.
+        """
         return "good" if self.passed else "plain" if self.sentence.startswith(NOT_YET) else "bad"
 
     def __str__(self) -> str:
@@ -78,7 +84,7 @@ class Verdict:
 
 
 class Exercise(NamedTuple):
-    """One exercise: its checker, and what kind of answer it wants."""
+    """One exercise: its checker, and the kind of its answer."""
 
     key: str
     checker: Callable[[Any], None]
@@ -124,11 +130,11 @@ def expect(holds: Any, sentence: str) -> None:
 
 
 def check(key: str, answer: Any, *, strict: bool = False) -> Verdict:
-    """Whether the exercise `key` is solved by `answer`, a function or a value, in a sentence.
+    """Check whether `answer` solves the exercise `key`, in a sentence.
 
-    Each failure in a row gives the next hint. LookupError for an unknown key. The verdict is true
-    only if it is solved; `strict` raises AssertionError with the sentence if not, for graders that
-    go by what a cell raises.
+    The answer is a function or a value. Each failure in a row gives the next hint. LookupError for
+    an unknown key. The verdict is true only if it is solved; `strict` raises AssertionError with
+    the sentence if not, for graders that go by what a cell raises.
     """
     verdict = judge(find(key), answer)
     if verdict.mood == "bad":
@@ -147,7 +153,7 @@ def check(key: str, answer: Any, *, strict: bool = False) -> Verdict:
 
 
 def find(key: str) -> Exercise:
-    """The exercise of that key, from its chapter's module; LookupError if there is none."""
+    """Find the exercise of that key, or raise LookupError."""
     module = f"ikteach.course.exercises.ch{str(key).partition('.')[0]}"
     try:
         importlib.import_module(module)
@@ -160,14 +166,14 @@ def find(key: str) -> Exercise:
 
 
 def judge(task: Exercise, answer: Any) -> Verdict:
-    """The verdict on an answer, without hints and without a record of it."""
+    """Judge an answer, without hints and without recording it."""
     name = _name(answer, task.key.partition(".")[2])
 
     def verdict(passed: bool, sentence: str) -> Verdict:
-        return Verdict(task.key, passed, bounded(" ".join(sentence.split()), LONGEST))
+        return Verdict(task.key, passed, bounded(" ".join(sentence.split()), LONGEST_SENTENCE))
 
     try:
-        with untouched(), deadline(task.seconds):
+        with restoring(), deadline(task.seconds):
             if answer is None or answer is ...:
                 raise NotYetError
             task.checker(_value(task, answer) if task.value else _function(task, answer, name))
@@ -185,7 +191,7 @@ def judge(task: Exercise, answer: Any) -> Verdict:
 
 
 def _name(answer: Any, other: str) -> str:
-    """What a function calls itself, if that is a name."""
+    """Find what a function calls itself, if that is a name."""
     try:
         name = answer.__name__
     except Exception:
@@ -195,7 +201,9 @@ def _name(answer: Any, other: str) -> str:
 
 
 class Answer:
-    """A student's function as a checker sees it: it returns what it must or raises WrongError.
+    """A student's function as a checker sees it.
+
+    It returns what it must or raises WrongError.
 
     call   the last call, as text for sentences
     """
@@ -205,8 +213,8 @@ class Answer:
         self.call = f"{name}()"
 
     def __call__(self, *arguments: Any) -> Any:
-        """The answer to these arguments, which stay as they are."""
-        self.call = f"{self.name}({', '.join(map(brief, arguments))})"
+        """Answer these arguments, which stay as they are."""
+        self.call = f"{self.name}({', '.join(map(_brief, arguments))})"
         given = copy.deepcopy(arguments)
         try:
             result = self._run(given)
@@ -228,8 +236,8 @@ class Answer:
         return of_form(result, wanted, f"`{self.call}` returned")
 
     def error(self, *arguments: Any) -> Exception | None:
-        """What the function raises for these arguments; None if it returns."""
-        self.call = f"{self.name}({', '.join(map(brief, arguments))})"
+        """Give what the function raises, or None if it returns."""
+        self.call = f"{self.name}({', '.join(map(_brief, arguments))})"
         try:
             result = self._run(copy.deepcopy(arguments))
         except (NotYetError, WrongError):
@@ -241,7 +249,7 @@ class Answer:
         return None
 
     def _run(self, given: Sequence[Any]) -> Any:
-        """What the function returns; of exceptions it raises those that are errors, or ours."""
+        """Call the function; raise of its exceptions errors and ours."""
         try:
             with Unpatched():
                 return self._function(*given)
@@ -281,9 +289,10 @@ def _value(task: Exercise, answer: Any) -> Any:
 
 
 def of_form(result: Any, wanted: Any, said: str) -> Any:
-    """`result` if it is what is wanted, as a finite array where that is a shape; else WrongError.
+    """Give `result` back if it is of the wanted form.
 
-    `said` begins the sentence: "`f(x)` returned".
+    As a finite array where that is a shape; WrongError if it is not. `said` begins the sentence:
+    "`f(x)` returned".
     """
     if wanted is None:
         return result
@@ -294,7 +303,7 @@ def of_form(result: Any, wanted: Any, said: str) -> Any:
         return result
     form = f"an array of shape {wanted}" if wanted else "one number"
     try:
-        array = np.asarray(result)
+        array = np.asarray(None if isinstance(result, str) else result)  # a text may be long
         if array.dtype.kind not in "biuf":  # text, complex numbers, objects
             raise TypeError
     except Exception:  # whatever an object of the student's raises when it is to be an array
@@ -310,8 +319,8 @@ def of_form(result: Any, wanted: Any, said: str) -> Any:
     return array
 
 
-def brief(value: Any) -> str:
-    """A value in few words, for a sentence."""
+def _brief(value: Any) -> str:
+    """Tell a value in few words, for a sentence."""
     if isinstance(value, np.ndarray) and value.size > 4:
         return f"array {value.shape}"
     if isinstance(value, np.ndarray | float):
@@ -325,7 +334,7 @@ def _kind(value: Any) -> str:
 
 
 def _type(value: Any) -> str:
-    """The name of its type: the true one, whatever its class says of itself."""
+    """Name its type, the true one, whatever its class says."""
     return bounded(type.__dict__["__name__"].__get__(type(value)) or "nameless type", 60)
 
 
@@ -334,7 +343,7 @@ def _a(name: str) -> str:
 
 
 def _said(error: BaseException) -> str:
-    """What was raised and its first line, bounded."""
+    """Say what was raised and its first line, bounded."""
     try:
         text = str(error).strip()
     except Exception:
@@ -343,7 +352,7 @@ def _said(error: BaseException) -> str:
 
 
 def _told(error: BaseException) -> str:
-    """What was raised and in which line of the student's, without a traceback."""
+    """Say what was raised, and in which line of the student's."""
     every = traceback.extract_tb(error.__traceback__)
     frames = [frame for frame in every if frame.filename != __file__]  # but our own calls
     theirs = [frame for frame in frames if frame.filename == frames[0].filename]

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 AGAIN = 0.1  # [s] until a timer that was swallowed by a bare `except:` comes again
 AT_ONCE = 1e-4  # [s] the same, when it has been swallowed some times
-PATIENCE = 3  # times
+SWALLOWED = 3  # times
 
 OLD = sys.version_info < (3, 12)  # `while True: pass` in one line is then a line but once
 SOUND = ("ikteach.", "numpy.")  # modules without such a line
@@ -22,17 +22,20 @@ _shielded: set[CodeType] = set()
 
 
 class TooLongError(BaseException):
-    """The time is over. Not an Exception, so that `except Exception:` does not swallow it."""
+    """The end of the time.
+
+    Not an Exception, so that `except Exception:` does not swallow it.
+    """
 
 
 def shielded(function: F) -> F:
-    """Let a function of ours come to its end, whatever the time is."""
+    """Let a function of ours end, whatever the time."""
     _shielded.add(function.__code__)
     return function
 
 
 def deadline(seconds: float) -> AbstractContextManager[None]:
-    """Raise TooLongError inside the block once it has run for so long.
+    """Raise TooLongError inside the block after some seconds.
 
     A timer's signal does it where there is one: in the main thread of a kernel on Linux or macOS.
     Elsewhere (Windows, another thread, Pyodide) each line of Python looks at the clock; what runs
@@ -76,7 +79,7 @@ class Timer:
         if not _may_stop(frame):
             return
         self._rung += 1
-        if self._rung == PATIENCE:  # so often that one comes between an `except:` and the next try
+        if self._rung == SWALLOWED:  # so often that one comes between an `except:` and the next try
             signal.setitimer(signal.ITIMER_REAL, AT_ONCE, AT_ONCE)
         raise TooLongError
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ikteach.checks import shown
 from ikteach.course import record
 from ikteach.course.notice import box
-from ikteach.files import bounded, plain
+from ikteach.files import bounded, jsonable
 from ikteach.markup import Markup
 
 if TYPE_CHECKING:
@@ -167,12 +167,11 @@ def reveal(key: str, answer: Any, because: str | None = None) -> Revealed:
     because  a sentence on why
     A prediction that was not made stays open: the result is shown all the same.
     """
-    result = plain(answer)
+    result = jsonable(answer)
     known = record.entry("predictions", key)
     trouble = record.store("predictions", key, result=result)
     _lock(key)
-    late = bool(known.get("late"))
-    return Revealed(known.get("answer"), result, because or "", late, trouble)
+    return Revealed(known.get("answer"), result, because or "", bool(known.get("late")), trouble)
 
 
 def _lock(key: str) -> None:
@@ -215,8 +214,7 @@ def quiz(
         verdict = "✓ Right." if good else "✗ Not so."
         return f"{verdict} {reasons.get(answer, '')} {trouble}".strip()
 
-    asked = {"question": question, "options": list(options), "button": "Check"}
-    return Question(f"quiz {key}", judge, **asked)
+    return Question(f"quiz {key}", judge, question=question, options=list(options), button="Check")
 
 
 def words(value: Any) -> str:

@@ -16,15 +16,15 @@ from ikteach import files
 from ikteach.course.notice import Notice
 
 FILE = "predictions.json"
-KINDS = ("predictions", "verdicts", "quiz")
+ANSWER_KINDS = ("predictions", "verdicts", "quiz")
 KEPT = "your answers are kept until the kernel stops."
-MOST = 50 * 2**20  # bytes of a file of answers; an exported log may be in it
-MANY = 5000  # answers of a kind
+LARGEST_ANSWERS = 50 * 2**20  # bytes of a file of answers; an exported log may be in it
+MOST_ANSWERS = 5000  # answers of a kind
 FIELDS = 100  # of an answer
-LONGEST = 2000  # letters of a field
+LONGEST_FIELD = 2000  # letters of a field
 
 Entry = dict[str, Any]
-Answers = dict[str, dict[str, Entry]]  # kind (one of KINDS) -> key -> entry
+Answers = dict[str, dict[str, Entry]]  # kind (one of ANSWER_KINDS) -> key -> entry
 
 _lock = RLock()  # widgets may call from another thread
 _unsaved: dict[Path, Answers] = {}  # what could not be written, per folder
@@ -32,9 +32,9 @@ _folder: Path | None = None
 
 
 def home() -> Path:
-    """The folder of the answers: the one in which the kernel was when it was first asked.
+    """Find the folder of the answers, the notebook's.
 
-    That is the notebook's, wherever its cells go later.
+    It is the one in which the kernel was when it was first asked, wherever cells go later.
     """
     global _folder
     if _folder is None:
@@ -46,21 +46,25 @@ def home() -> Path:
 
 
 def entries(kind: str) -> dict[str, Entry]:
-    """Key -> entry of all that is known of this kind here; changing it changes nothing."""
+    """Read the entries of this kind, {key: entry}.
+
+    Changing it changes nothing.
+    """
     with _lock:
         answers, _ = _read(home())
         return answers.get(kind, {})
 
 
 def entry(kind: str, key: str) -> Entry:
-    """What is known under this key; empty if nothing is."""
+    """Read the entry of this key, empty if missing."""
     return entries(kind).get(key, {})
 
 
 def store(kind: str, key: str, *, again: bool = False, **fields: Any) -> str:
-    """Add these fields under the key, at once; a sentence if something is amiss, else ''.
+    """Add these fields under the key, at once.
 
-    `again` counts this as another try, in the field `tries`.
+    Returns a sentence if something is amiss, else ''. `again` counts this as another try, in the
+    field `tries`.
     """
     folder = home()
     with _lock:
@@ -80,7 +84,7 @@ def store(kind: str, key: str, *, again: bool = False, **fields: Any) -> str:
 
 
 def export(path: str | os.PathLike[str], log: Any = None, *, overwrite: bool = False) -> Notice:
-    """Write predictions, verdicts and quiz answers, and a `log` (a DataFrame), to one JSON file.
+    """Write all answers, and a `log`, to a JSON file.
 
     A file that exists is left alone unless `overwrite`. Returns a sentence about what was done.
     `pandas.read_json(io.StringIO(json.dumps(file["log"])), orient="split")` gives the log back.
@@ -98,7 +102,7 @@ def export(path: str | os.PathLike[str], log: Any = None, *, overwrite: bool = F
     except (ValueError, OverflowError, RecursionError) as error:
         why = files.bounded(str(error))
         return Notice(f"Nothing written: `log` cannot be put into a file ({why}).", "bad")
-    content = {**{kind: answers.get(kind, {}) for kind in KINDS}, "log": table}
+    content = {**{kind: answers.get(kind, {}) for kind in ANSWER_KINDS}, "log": table}
     try:
         files.write_whole(target, _json(content), overwrite=overwrite)
     except FileExistsError:
@@ -106,18 +110,21 @@ def export(path: str | os.PathLike[str], log: Any = None, *, overwrite: bool = F
         return Notice(f"{path} exists already and was left alone: {hint}.", "bad")
     except OSError as error:
         return Notice(f"{files.bounded(str(path))} could not be written: {error}.", "bad")
-    counts = ", ".join(f"{len(answers.get(kind, {}))} {kind}" for kind in KINDS)
+    counts = ", ".join(f"{len(answers.get(kind, {}))} {kind}" for kind in ANSWER_KINDS)
     rows = f", a log of {len(log)} rows" if log is not None else ""
     return Notice(f"Written to {path}: {counts}{rows}. {trouble}".strip(), "good")
 
 
 def valid(answers: Any) -> Answers:
-    """The answers if they have the form that we write; ValueError says what has not."""
+    """Check that answers have the form that we write.
+
+    ValueError says what has not.
+    """
     if not isinstance(answers, dict):
         raise ValueError("it holds no answers of this course")
-    for kind in KINDS:
+    for kind in ANSWER_KINDS:
         group = answers.get(kind, {})
-        if not isinstance(group, dict) or len(group) > MANY:
+        if not isinstance(group, dict) or len(group) > MOST_ANSWERS:
             raise ValueError(f"its {kind} have a form that is not ours")
         for key, one in group.items():
             if not isinstance(one, dict) or len(one) > FIELDS or not _fit(one):
@@ -136,22 +143,22 @@ def _add(answers: Answers, kind: str, key: str, fields: Entry, again: bool) -> E
     known = group.get(key, {})
     tries = {"tries": known.get("tries", 0) + 1} if again else {}
     now = datetime.now(UTC).isoformat(timespec="seconds")
-    new = {name: _brief(files.plain(value)) for name, value in fields.items()}
+    new = {name: _brief(files.jsonable(value)) for name, value in fields.items()}
     group[key] = known | new | tries | {"at": now}
     return group[key]
 
 
 def _brief(value: Any) -> Any:
-    """A value as it is, or what a file that is written anew at each answer can hold of it."""
+    """Shorten what a file written anew at each answer cannot hold."""
     text = value if isinstance(value, str) else json.dumps(value)
-    return value if len(text) <= LONGEST else files.bounded(text, LONGEST)
+    return value if len(text) <= LONGEST_FIELD else files.bounded(text, LONGEST_FIELD)
 
 
 def _read(folder: Path, *, set_aside: bool = False) -> tuple[Answers, str]:
-    """The answers of the file and of memory, and a sentence if the file is no good."""
+    """Read the answers of the file and of memory, and any trouble."""
     path, answers, trouble = folder / FILE, {}, ""
     try:
-        answers = valid(files.read_json(path, MOST))
+        answers = valid(files.read_json(path, LARGEST_ANSWERS))
     except FileNotFoundError:
         pass
     except ValueError:  # not JSON, not UTF-8, or JSON of something else

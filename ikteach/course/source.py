@@ -8,7 +8,7 @@ from ikteach.markup import escaped
 
 
 class Source:
-    """The source text of a function or class, for the output of a cell."""
+    """Source text of a function or class, for a cell."""
 
     def __init__(self, thing: Any) -> None:
         self.name = f"{thing.__module__}.{thing.__qualname__}"
@@ -22,5 +22,8 @@ class Source:
 
 
 def source(thing: Callable[..., Any]) -> Source:
-    """The source of `thing`, as the package runs it; TypeError for what has none in Python."""
+    """Show the source of `thing`, as the package runs it.
+
+    TypeError for what has none in Python.
+    """
     return Source(thing)

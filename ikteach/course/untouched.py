@@ -22,8 +22,8 @@ PRINTED = 10_000  # letters that a check may print
 
 
 @contextmanager
-def untouched() -> Iterator[None]:
-    """Put back, when the block ends, what of the session its code has changed.
+def restoring() -> Iterator[None]:
+    """Restore, when the block ends, the session as it was.
 
     That is the working directory, the environment, the import path, the streams, the states of
     random numbers, numpy's way of printing and the recursion limit. What is printed in the block is
@@ -35,7 +35,7 @@ def untouched() -> Iterator[None]:
     folder = None
     with suppress(OSError):  # of one that is gone
         folder = os.getcwd()
-    sys.stdout, sys.stderr = Quiet(sys.stdout), Quiet(sys.stderr)
+    sys.stdout, sys.stderr = Bounded(sys.stdout), Bounded(sys.stderr)
     try:
         with np.printoptions():
             yield
@@ -54,7 +54,7 @@ def untouched() -> Iterator[None]:
 
 
 class Unpatched:
-    """`with Unpatched():` puts back names of `MODULES`, numpy's way with errors, and warnings.
+    """Restores names of `MODULES`, numpy's errors and warnings.
 
     So that whoever judges what the block has made finds `numpy` as it was.
     """
@@ -76,14 +76,14 @@ class Unpatched:
         self._inside.close()
 
 
-class Quiet(io.TextIOBase):
+class Bounded(io.TextIOBase):
     """Passes text on until it becomes too much."""
 
     def __init__(self, to: Any) -> None:
         self._to, self._left = to, PRINTED
 
     def write(self, text: str) -> int:
-        """Pass on what may be printed yet; the rest is left out."""
+        """Pass on what may still be printed; drop more."""
         if self._left > 0 and self._to is not None:
             self._to.write(text[: self._left])
             self._left -= len(text)

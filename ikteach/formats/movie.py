@@ -23,7 +23,10 @@ Pixels = npt.NDArray[np.uint8]  # (height, width, 3), red green blue
 
 
 class Kind(NamedTuple):
-    """How one sort of file is made. `even`: its colours are kept for squares of 2 × 2 pixels."""
+    """Encoding of one sort of file.
+
+    `even`: its colours are kept for squares of 2 × 2 pixels.
+    """
 
     codec: str
     pixels: str
@@ -47,7 +50,10 @@ FASTEST = {".gif": 50}  # a GIF counts in hundredths, and players slow down what
 
 
 class Facts(NamedTuple):
-    """What a movie file says of itself: size (width, height), frames a second, how many frames."""
+    """Size, rate and length of a movie file.
+
+    size (width, height), frames per second, number of frames
+    """
 
     size: tuple[int, int]
     rate: float
@@ -63,7 +69,9 @@ def write(
     count: int | None = None,
     overwrite: bool = False,
 ) -> Path:
-    """Write the frames to a movie and return its path; the ending says which: .mp4, .avi, .gif.
+    """Write the frames to a movie and return its path.
+
+    The ending says which: .mp4, .avi, .gif.
 
     frames     uint8 arrays (height, width, 3), from any iterable; they are taken one by one
     rate       frames a second
@@ -97,13 +105,14 @@ def write(
 def writing(
     path: str | os.PathLike[str], *, size: tuple[int, int], rate: float, overwrite: bool = False
 ) -> Iterator[Callable[[Pixels], None]]:
-    """`with writing(...) as add:` and then add(frame) for each. Arguments as in `write`.
+    """Write a movie frame by frame: `with writing(...) as add:`.
 
-    Where the block is left by an exception, nothing stays behind.
+    Then add(frame) for each. Arguments as in `write`. Where the block is left by an exception,
+    nothing stays behind.
     """
     av = library()
     path = Path(path)
-    kind = check(path, size=size, rate=rate, overwrite=overwrite)
+    kind = kind_of(path, size=size, rate=rate, overwrite=overwrite)
     with (
         drafted(path, overwrite=overwrite) as draft,
         av.open(str(draft), "w", format=path.suffix[1:].lower()) as container,
@@ -111,10 +120,13 @@ def writing(
         yield from _into(container, kind, size, Fraction(rate).limit_denominator(1001))
 
 
-def check(
+def kind_of(
     path: str | os.PathLike[str], *, size: tuple[int, int], rate: float, overwrite: bool = False
 ) -> Kind:
-    """How the movie will be made; an error says why it cannot be, before any time is spent."""
+    """Choose how the movie will be made, or refuse.
+
+    An error says why it cannot be, before any time is spent.
+    """
     path = Path(path)
     kind = KINDS.get(path.suffix.lower())
     if kind is None:
@@ -149,14 +161,14 @@ def check(
 
 
 def read(path: str | os.PathLike[str]) -> Iterator[Pixels]:
-    """The frames of a movie file, one by one."""
+    """Read the frames of a movie file, one by one."""
     with _open(path) as container, _whole(path):
         for frame in container.decode(video=0):
             yield frame.to_ndarray(format="rgb24")
 
 
 def facts(path: str | os.PathLike[str]) -> Facts:
-    """Size, rate and number of frames of a movie file, counted by reading it through."""
+    """Count the frames of a movie; give size and rate."""
     with _open(path) as container, _whole(path):
         stream = container.streams.video[0]
         times = sorted(float(frame.pts * frame.time_base) for frame in container.decode(stream))
@@ -226,7 +238,7 @@ def _into(
 
 
 def _palette(av: Any, stream: Any, rate: Fraction) -> Callable[[Any], Any]:
-    """A function that gives a frame the 256 colours that suit it best, for a GIF."""
+    """Make a function that gives a frame its 256 best colours."""
     graph = av.filter.Graph()
     source = graph.add_buffer(
         width=stream.width, height=stream.height, format=av.VideoFormat("rgb24"), time_base=1 / rate

@@ -1,6 +1,6 @@
 """A session as two files: settings, figure and events in JSON, the numbers of every tick in CSV.
 
-Both can be read by eye and by any program; `told` and `table` know what stands in them.
+Both can be read by eye and by any program; `description` and `table` know their contents.
 """
 
 import csv
@@ -22,27 +22,28 @@ from ikteach.files import (
     taken,
     write_whole,
 )
+from ikteach.formats import description
 from ikteach.formats import table as numbers
-from ikteach.formats import told as words
 from ikteach.motion.live.log import Log
 from ikteach.motion.live.session import Session
 
 FORMAT, VERSION = "ikteach session", 1
-MOST = 64 * 2**20  # [bytes] of the JSON file
+LARGEST_JSON = 64 * 2**20  # [bytes] of the JSON file
 
 
 def save(
     path: str | os.PathLike[str], run: Log | Session, *, overwrite: bool = False
 ) -> tuple[Path, Path]:
-    """Write the run to <path>.json and <path>.csv, and return both paths.
+    """Write the run to two files, and return both paths.
 
-    FileExistsError where one of them is there already, unless `overwrite`; ValueError for a run
-    that could not be read back; OSError where nothing can be written. The new run is there from the
-    moment on at which <path>.json is replaced, and until then the old one. If <path>.csv cannot be
-    replaced, as another program has it open, the numbers stay in a file named <path>-xxxxxxxx.csv.
+    They are <path>.json and <path>.csv. FileExistsError where one of them is there already, unless
+    `overwrite`; ValueError for a run that could not be read back; OSError where nothing can be
+    written. The new run is there from the moment on at which <path>.json is replaced, and until
+    then the old one. If <path>.csv cannot be replaced, as another program has it open, the numbers
+    stay in a file named <path>-xxxxxxxx.csv.
     """
     log = run.log() if isinstance(run, Session) else run
-    words.check_writable(log)
+    description.check_writable(log)
     settings, table = _pair(path)
     if not settings.parent.is_dir():
         raise FileNotFoundError(f"there is no folder {quoted(settings.parent)} to save in")
@@ -51,12 +52,12 @@ def save(
             raise taken(file)
     fresh = table.with_name(f"{table.stem[:50]}-{token_hex(4)}.csv")
     head = {"format": FORMAT, "version": VERSION, "numbers": table.name, "written": fresh.name}
-    content = json.dumps(head | words.settings(log), indent=1, ensure_ascii=False) + "\n"
+    content = json.dumps(head | description.describe(log), indent=1, ensure_ascii=False) + "\n"
     before = _unsettled(settings)
     try:
         with drafted(fresh) as draft, draft.open("w", newline="", encoding="utf-8") as out:
             csv.writer(out).writerows(numbers.rows(log))
-        if fresh.stat().st_size > numbers.MOST or len(content.encode()) > MOST:
+        if fresh.stat().st_size > numbers.LARGEST_TABLE or len(content.encode()) > LARGEST_JSON:
             raise ValueError(
                 "the run is too large to be read back: save its last ticks, log(last=…)"
             )
@@ -74,20 +75,21 @@ def save(
 
 
 def load(path: str | os.PathLike[str]) -> Log:
-    """The run that `save` has written; `path` is that of the JSON file, or without its ending.
+    """Read the run that `save` has written.
 
-    All of it is checked before anything is made of it. FileNotFoundError and ValueError say which
-    file is missing, of another kind, or what in it is wrong; OSError where it cannot be read.
+    `path` is that of the JSON file, or without its ending. All of it is checked before anything is
+    made of it. FileNotFoundError and ValueError say which file is missing, of another kind, or what
+    in it is wrong; OSError where it cannot be read.
     """
-    file, told = _told(path)
+    file, given = _described(path)
     try:
-        rows = words.field(told, "rows", int)
-        facts = words.facts(told)
-        table = _table(file, told)
+        rows = description.field(given, "rows", int)
+        facts = description.log_facts(given)
+        table = _table(file, given)
     except (ValueError, LookupError) as error:
         raise ValueError(f"{quoted(file.name)} is damaged: {bounded(str(error))}") from None
     try:
-        return numbers.read(table, rows, facts)
+        return numbers.read_log(table, rows, facts)
     except FileNotFoundError:
         raise FileNotFoundError(
             f"{quoted(file.name)} has its numbers in {quoted(table)}, which is missing"
@@ -104,12 +106,12 @@ def _pair(path: str | os.PathLike[str]) -> tuple[Path, Path]:
     return stem.with_name(f"{stem.name}.json"), stem.with_name(f"{stem.name}.csv")
 
 
-def _told(path: str | os.PathLike[str]) -> tuple[Path, dict[str, Any]]:
-    """The JSON file that `path` means, and what it tells."""
+def _described(path: str | os.PathLike[str]) -> tuple[Path, dict[str, Any]]:
+    """Read the JSON file that `path` means."""
     path = Path(path)
     file, _ = _pair(path)
     try:
-        told = read_json(file, MOST)
+        given = read_json(file, LARGEST_JSON)
     except FileNotFoundError:
         if os.path.isfile(path):
             raise ValueError(
@@ -119,29 +121,29 @@ def _told(path: str | os.PathLike[str]) -> tuple[Path, dict[str, Any]]:
     except ValueError as error:
         raise ValueError(f"{quoted(file.name)} is not a session: {error}") from None
     name = quoted(file.name)
-    if not isinstance(told, dict) or told.get("format") != FORMAT:
+    if not isinstance(given, dict) or given.get("format") != FORMAT:
         raise ValueError(f"{name} is not a session: it does not say 'format': {FORMAT!r}")
-    if told.get("version") != VERSION:
-        version = quoted(told.get("version"))
+    if given.get("version") != VERSION:
+        version = quoted(given.get("version"))
         raise ValueError(f"{name} is of version {version}, and this reads {VERSION}")
-    return file, told
+    return file, given
 
 
 def _other(path: Path, file: Path) -> str:
-    """What a file is that has no settings of a session beside it."""
+    """Say what a file is that has no settings beside it."""
     try:
-        read_text(path, MOST)
+        read_text(path, LARGEST_JSON)
     except ValueError as error:
         return str(error)
     return f"there is no {quoted(file.name)} beside it, which `save` would have written"
 
 
-def _table(file: Path, told: dict[str, Any]) -> Path:
-    """The table of numbers, which lies beside the JSON file and nowhere else.
+def _table(file: Path, given: dict[str, Any]) -> Path:
+    """Find the table of numbers, beside the JSON file and nowhere else.
 
     `written` is its name until it gets the one that it keeps, `numbers`.
     """
-    for name in (told.get("written", ""), words.field(told, "numbers", str)):
+    for name in (given.get("written", ""), description.field(given, "numbers", str)):
         if name == "" or not isinstance(name, str):
             continue
         if re.search(r"[/\\:\0]", name) or name in (".", "..") or len(name.encode()) > 255:
@@ -156,10 +158,10 @@ def _table(file: Path, told: dict[str, Any]) -> Path:
 
 
 def _unsettled(settings: Path) -> Path | None:
-    """The table of an earlier run that has not got the name that it was to keep."""
+    """Find the table of an earlier run that lacks its final name."""
     try:
-        file, told = _told(settings)
-        table = _table(file, told)
-        return table if table.name == told.get("written") else None
+        file, given = _described(settings)
+        table = _table(file, given)
+        return table if table.name == given.get("written") else None
     except (OSError, ValueError):
         return None

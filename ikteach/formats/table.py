@@ -20,7 +20,7 @@ from ikteach.files import quoted, read_text
 from ikteach.motion.live.log import Log
 
 PER_TICK = ("tick", "time", "phase", "advance", "floor", "shown")  # columns before "method"
-MOST = 512 * 2**20  # [bytes]
+LARGEST_TABLE = 512 * 2**20  # [bytes]
 LAST_TICK = 2**53  # a float still counts them
 DELIMITERS = ",;\t"  # of our own tables, and of spreadsheets in other languages
 TRUTH = {"TRUE": 1.0, "FALSE": 0.0}  # as spreadsheets like to write
@@ -51,21 +51,28 @@ def header(tree: Tree, effectors: Effectors) -> list[str]:
 
 
 def rows(log: Log) -> Iterator[Iterable[Any]]:
-    """Give the header and the rows; a float goes out as its repr, which gives the same float."""
+    """Give the header and the rows.
+
+    A float goes out as its repr, which gives the same float.
+    """
     yield header(log.tree, log.effectors)
     for t in range(len(log)):
         tick = [getattr(log, what)[t].item() for what in PER_TICK[:-1]]
         tick += [log.methods[log.shown[t]], *log.targets[t].ravel().tolist()]
         for i, method in enumerate(log.methods):
             yield [
-                *tick, method, int(log.capped[t, i]), *log.error[t, i].tolist(),
-                *log.theta[t, i].tolist(), *log.held[t, i].astype(int).tolist(),
-            ]  # fmt: skip
+                *tick,
+                method,
+                int(log.capped[t, i]),
+                *log.error[t, i].tolist(),
+                *log.theta[t, i].tolist(),
+                *log.held[t, i].astype(int).tolist(),
+            ]
 
 
 def _columns(table: Path, names: list[str], count: int) -> dict[str, list[Any]]:
-    """The columns of the table: text for methods, and finite numbers."""
-    text = read_text(table, MOST)
+    """Read the columns: text for methods, and finite numbers."""
+    text = read_text(table, LARGEST_TABLE)
     if text[:4].lower() == "sep=":  # a spreadsheet tells of its delimiter
         text = text[text.find("\n") + 1 :]
     delimiter, found = _first_line(text, names)
@@ -110,7 +117,7 @@ def _columns(table: Path, names: list[str], count: int) -> dict[str, list[Any]]:
 
 
 def _first_line(text: str, names: list[str]) -> tuple[str, list[str]]:
-    """The delimiter that makes the most sense of the first line, and the names in that."""
+    """Find the delimiter that fits the first line, and its names."""
     lines = {}
     for delimiter in DELIMITERS:
         with suppress(csv.Error):
@@ -122,7 +129,7 @@ def _first_line(text: str, names: list[str]) -> tuple[str, list[str]]:
 
 
 def _number(text: str, delimiter: str) -> float:
-    """The number in a cell; NaN where there is none."""
+    """Read the number in a cell; NaN where there is none."""
     try:
         return float(text)
     except ValueError:
@@ -132,10 +139,11 @@ def _number(text: str, delimiter: str) -> float:
         return TRUTH.get(text.strip().upper(), math.nan)
 
 
-def read(table: Path, rows: int, facts: dict[str, Any]) -> Log:
-    """The log of these facts, whose rows must be every method of every tick in turn.
+def read_log(table: Path, rows: int, facts: dict[str, Any]) -> Log:
+    """Read the log of these facts from its table.
 
-    ValueError says what in the table is wrong, for a sentence that begins with its name.
+    Its rows must be every method of every tick in turn. ValueError says what in the table is wrong,
+    for a sentence that begins with its name.
     """
     methods, tree, effectors = facts["methods"], facts["tree"], facts["effectors"]
     m, n, k = len(methods), len(tree), len(effectors)
@@ -165,8 +173,12 @@ def read(table: Path, rows: int, facts: dict[str, Any]) -> Log:
         raise ValueError("the methods of one tick differ in their targets")
     return Log(
         tick=tick,
-        **{name: per_tick(name) for name in PER_TICK[1:-1]}, shown=per_tick("shown", np.int64),
-        targets=targets[:, 0], theta=all_of("theta.", (n,)), error=all_of("error.", (k,)),
+        **{name: per_tick(name) for name in PER_TICK[1:-1]},
+        shown=per_tick("shown", np.int64),
+        targets=targets[:, 0],
+        theta=all_of("theta.", (n,)),
+        error=all_of("error.", (k,)),
         capped=np.array(columns["capped"], dtype=bool).reshape(T, m),
-        held=all_of("held.", (n,), bool), **facts,
-    )  # fmt: skip
+        held=all_of("held.", (n,), bool),
+        **facts,
+    )

@@ -10,22 +10,21 @@ import ast
 import copy
 import re
 import shutil
-import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from ikteach.publish.delivery import chapters, course_files, deliver, find_course, told
-from ikteach.publish.parser import Parser
+from ikteach.publish.delivery import chapters, course_files, deliver, find_course, report
+from ikteach.publish.parser import Parser, RefusedError
 
 MARK = re.compile(r"^# %% (\S+)\n", re.MULTILINE)
 
 Notebook = Any  # of nbformat, which is typed as Any
 
 
-def main(package: Path, argv: list[str]) -> int:
-    """`python -m ikteach build student|instructor|html FOLDER`; the exit code."""
+def main(argv: list[str]) -> int:
+    """Make a build of the course; give the exit code."""
     parser = Parser(
         prog="python -m ikteach build",
         description="Make a build of the course in FOLDER. A file there that has been changed "
@@ -35,38 +34,37 @@ def main(package: Path, argv: list[str]) -> int:
     parser.add_argument("build", choices=BUILDS, help="notebooks without or with solutions; pages")
     parser.add_argument("folder", metavar="FOLDER", type=Path)
     options = parser.parse_args(argv)
-    notebooks = find_course(package).notebooks
+    notebooks = find_course().notebooks
     folder = options.folder.expanduser().resolve()
     if folder.is_relative_to(notebooks.resolve()):
-        return _refuse(f"{folder} is among the notebooks themselves; name another folder.")
+        raise RefusedError(f"{folder} is among the notebooks themselves; name another folder.")
     with tempfile.TemporaryDirectory() as made:
         try:
             BUILDS[options.build](notebooks, Path(made))
         except ModuleNotFoundError as error:
-            return _refuse(f"{error.name} is not installed: pip install 'ikteach[html]'")
+            install = "pip install 'ikteach[html]'"
+            raise RefusedError(f"{error.name} is not installed: {install}") from None
         except LookupError as error:
-            return _refuse(str(error))
-        print(*told(deliver(Path(made), folder), folder), sep="\n")
+            raise RefusedError(str(error)) from None
+        print(*report(deliver(Path(made), folder), folder), sep="\n")
     return 0
 
 
-def _refuse(sentence: str) -> int:
-    print(sentence, file=sys.stderr)
-    return 1
-
-
 def student(notebooks: Path, folder: Path) -> None:
-    """The notebooks as they are, without outputs, and the files that they use."""
+    """Copy the notebooks without outputs, and their files."""
     _make(notebooks, folder, lambda notebook: notebook)
 
 
 def instructor(notebooks: Path, folder: Path) -> None:
-    """The notebooks with solutions folded in; LookupError where one is missing."""
+    """Copy the notebooks with solutions folded in.
+
+    LookupError where one is missing.
+    """
     _make(notebooks, folder, with_solutions)
 
 
 def pages(notebooks: Path, folder: Path) -> None:
-    """The course to read: a page a chapter, and an index."""
+    """Write the course to read: a page per chapter."""
     from ikteach.publish import pages
 
     titles = chapters(notebooks)
@@ -96,7 +94,7 @@ def _make(notebooks: Path, folder: Path, change: Callable[[Notebook], Notebook])
 
 
 def clean(notebook: Notebook) -> Notebook:
-    """A copy without outputs, and without cells that are tagged `solution`."""
+    """Copy a notebook without outputs and `solution` cells."""
     notebook = copy.deepcopy(notebook)
     notebook.cells = [c for c in notebook.cells if "solution" not in c.metadata.get("tags", [])]
     for cell in notebook.cells:
@@ -106,7 +104,7 @@ def clean(notebook: Notebook) -> Notebook:
 
 
 def with_solutions(notebook: Notebook) -> Notebook:
-    """A copy that has after each cell that checks an exercise its solution, folded."""
+    """Copy a notebook with solutions folded after exercises."""
     import nbformat
 
     notebook = copy.deepcopy(notebook)
@@ -133,7 +131,7 @@ def checks(cell: Notebook) -> Iterator[tuple[str, str]]:
 
 
 def solution(key: str) -> str:
-    """The source of the solution of exercise `key`; LookupError if there is none."""
+    """Find the source of a solution, or raise LookupError."""
     chapter = Path(__file__).parents[1] / "course" / "solutions" / f"ch{key.partition('.')[0]}.py"
     if not chapter.exists():
         raise LookupError(
@@ -150,16 +148,3 @@ def solutions(text: str) -> dict[str, str]:
     """Key -> source of each solution in a module's text."""
     _, *parts = MARK.split(text)
     return {key: source.strip() for key, source in zip(parts[::2], parts[1::2], strict=True)}
-
-
-def answer_of(key: str) -> Any:
-    """The solution's answer: what its last statement binds, in a namespace of its own."""
-    source = solution(key)
-    chapter = Path(__file__).parents[1] / "course" / "solutions" / f"ch{key.partition('.')[0]}.py"
-    preamble = MARK.split(chapter.read_text(encoding="utf-8"))[0]
-    names: dict[str, Any] = {}
-    exec(compile(f"{preamble}\n{source}", str(chapter), "exec"), names)
-    match ast.parse(source).body[-1]:
-        case ast.FunctionDef(name=name) | ast.Assign(targets=[ast.Name(id=name)]):
-            return names[name]
-    raise LookupError(f"the last statement of the solution of {key!r} binds no answer")

@@ -5,7 +5,6 @@ name, or for files in folders the name of the outermost one, as a learning platf
 Nothing is changed, and nothing is passed over in silence: what cannot be read is named.
 """
 
-import argparse
 import os
 import re
 import sys
@@ -17,23 +16,24 @@ from typing import Any, NamedTuple
 import pandas as pd
 
 from ikteach.course.questions import words
-from ikteach.course.record import KINDS, MOST, valid
+from ikteach.course.record import ANSWER_KINDS, LARGEST_ANSWERS, valid
 from ikteach.files import bounded, read_json, whole_characters, write_whole
+from ikteach.publish.parser import Parser, RefusedError
 
-NAMES = dict(zip(KINDS, ("prediction", "exercise", "quiz"), strict=True))
+NAMES = dict(zip(ANSWER_KINDS, ("prediction", "exercise", "quiz"), strict=True))
 SKIPPED = 3  # the exit code when all went well, but for files that were left out
 COLUMNS = 200  # of a log, and of the table
 SAID = 8  # answers that the summary names
 # Where a spreadsheet takes a text for a formula: at its beginning, and after what may begin a cell.
 FORMULA = re.compile(r"(^|(?<=[\t\r\n;,|]))(?=\s*[=+\-@＝＋－＠])|^(?=[\t\r\n])")
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
-FIRST = ["student", "file", "kind", "key", "answer", "result", "right", "tries", "late", "at"]
+LEADING = ["student", "file", "kind", "key", "answer", "result", "right", "tries", "late", "at"]
 
 
 class Collected(NamedTuple):
     """What was found.
 
-    table    a row for each student, file, kind and key: `FIRST`, then whatever else was recorded;
+    table    a row for each student, file, kind and key: `LEADING`, then whatever else was recorded;
              `right` is None for a number that was predicted, and where no result was shown
     logs     the exported logs, one below the other, with student and file in front
     skipped  {file: why it, or its log, was left out}
@@ -45,7 +45,7 @@ class Collected(NamedTuple):
 
 
 def collect(folder: Path) -> Collected:
-    """Read every file of answers in the folder and the folders in it."""
+    """Read every file of answers in the folder and below."""
     if not folder.is_dir():
         raise NotADirectoryError(f"{folder} is not a folder")
     rows: list[dict[str, Any]] = []
@@ -58,8 +58,8 @@ def collect(folder: Path) -> Collected:
         try:
             if hindrance:
                 raise ValueError(hindrance)
-            content = valid(read_json(path, MOST))
-            if not content.keys() & set(KINDS):
+            content = valid(read_json(path, LARGEST_ANSWERS))
+            if not content.keys() & set(ANSWER_KINDS):
                 raise ValueError("it holds no answers of this course")
             found = [row | who for row in _rows(content)]
         except (OSError, ValueError) as error:
@@ -73,15 +73,16 @@ def collect(folder: Path) -> Collected:
         else:
             if log is not None:
                 logs.append(pd.concat([pd.DataFrame(who, index=log.index), log], axis=1))
-    table = pd.DataFrame(rows, columns=[*FIRST, *_others(rows)], dtype=object)
+    table = pd.DataFrame(rows, columns=[*LEADING, *_others(rows)], dtype=object)
     together = pd.concat(logs, ignore_index=True) if logs else pd.DataFrame()
     return Collected(table, together, skipped)
 
 
-def summary(table: pd.DataFrame) -> pd.DataFrame:
-    """A row for each question: how many answered, how many are right, what they said.
+def summarise(table: pd.DataFrame) -> pd.DataFrame:
+    """Summarise the answers, a row per question.
 
-    Of a student who handed in several files the newest answer counts.
+    How many answered, how many are right, what they said. Of a student who handed in several files
+    the newest answer counts.
     """
     in_time = table.sort_values("at", kind="stable", na_position="first")
     newest = in_time.drop_duplicates(["student", "kind", "key"], keep="last")
@@ -96,8 +97,8 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def main(argv: list[str]) -> int:
-    """`python -m ikteach collect FOLDER`; the exit code, which is 3 if a file was left out."""
-    parser = argparse.ArgumentParser(
+    """Collect the answers; give the exit code."""
+    parser = Parser(
         prog="python -m ikteach collect",
         description="One table of all predictions, checks and quiz answers in FOLDER: files that "
         "`export` wrote, or predictions.json.",
@@ -112,33 +113,34 @@ def main(argv: list[str]) -> int:
     outputs = {name: path for name in ("table", "logs") if (path := getattr(options, name))}
     for path in outputs.values():
         if os.path.lexists(path):
-            return _refuse(f"{path} exists already and was left alone; name another file.")
+            raise RefusedError(f"{path} exists already and was left alone; name another file.")
     if len(set(map(os.path.realpath, outputs.values()))) < len(outputs):
-        return _refuse("The table and the logs need two files.")
+        raise RefusedError("The table and the logs need two files.")
     try:
         found = collect(options.folder.expanduser())
     except NotADirectoryError as error:
-        return _refuse(f"{error}.")
+        raise RefusedError(f"{error}.") from None
     for name, why in found.skipped.items():
         print(_shown(f"{name}: {why}"), file=sys.stderr)
     if found.table.empty:
-        return _refuse(f"There are no answers in {options.folder}.")
+        raise RefusedError(f"There are no answers in {options.folder}.")
     count = found.table[["student", "file"]].nunique()
     print(f"{len(found.table)} answers of {count['student']} students in {count['file']} files")
-    print(_shown(summary(found.table).to_string()))
+    print(_shown(summarise(found.table).to_string()))
     for name, path in outputs.items():
         try:
             write_whole(path, harmless(getattr(found, name)).to_csv(index=False))
         except OSError as error:
-            return _refuse(f"{error}.")
+            raise RefusedError(f"{error}.") from None
         print(f"written: {path}")
     return SKIPPED if found.skipped else 0
 
 
 def harmless(table: pd.DataFrame) -> pd.DataFrame:
-    """A table in which no text is a formula to a spreadsheet: an apostrophe stands before it.
+    """Make a table in which nothing is a spreadsheet's formula.
 
-    Numbers stay as they are, and so do texts that are one, such as "-0.5".
+    An apostrophe stands before each text that would be one. Numbers stay as they are, and so do
+    texts that are one, such as "-0.5".
     """
     return table.rename(columns=_text).map(_text)
 
@@ -154,13 +156,8 @@ def _shown(text: str) -> str:
     return "".join(one if one.isprintable() or one == "\n" else "�" for one in text)
 
 
-def _refuse(sentence: str) -> int:
-    print(sentence, file=sys.stderr)
-    return 1
-
-
 def _files(folder: Path) -> Iterator[tuple[Path, str]]:
-    """The files that may hold answers, and a word on those that cannot."""
+    """Find the files that may hold answers, with any hindrance."""
     unreadable: list[OSError] = []
     for place, folders, names in os.walk(folder, onerror=unreadable.append):
         folders[:] = sorted(name for name in folders if not name.startswith("."))
@@ -179,7 +176,7 @@ def _files(folder: Path) -> Iterator[tuple[Path, str]]:
 
 
 def _rows(content: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    for kind in KINDS:
+    for kind in ANSWER_KINDS:
         for key, entry in content.get(kind, {}).items():
             fields = {bounded(name, 60): _cell(value) for name, value in entry.items()}
             yield fields | {"kind": NAMES[kind], "key": key, "right": _right(kind, entry)}
@@ -195,20 +192,20 @@ def _right(kind: str, entry: dict[str, Any]) -> bool | None:
 
 
 def _cell(value: Any) -> Any:
-    """A value as it stands in a cell of the table."""
+    """Make a value fit for a cell of the table."""
     if isinstance(value, list | str):
         return words(value)
     return bounded(str(value)) if isinstance(value, dict) else value
 
 
 def _others(rows: list[dict[str, Any]]) -> list[str]:
-    """What was recorded beside the usual, in the order in which it turns up."""
+    """List further fields that were recorded, in order of appearance."""
     names = dict.fromkeys(name for row in rows for name in row)
-    return [name for name in names if name not in FIRST][:COLUMNS]
+    return [name for name in names if name not in LEADING][:COLUMNS]
 
 
 def _log(log: Any) -> pd.DataFrame | None:
-    """An exported log as a table; ValueError if it has another form."""
+    """Tabulate an exported log; ValueError if it has another form."""
     if log is None:
         return None
     match log:
@@ -225,7 +222,7 @@ def _fills(width: int, row: Any) -> bool:
 
 
 def _said(answers: pd.Series) -> str:
-    """The answers, the most frequent first; the median of numbers."""
+    """Tell the answers, the most frequent first, or their median."""
     known = answers.dropna()
     if known.empty:
         return ""

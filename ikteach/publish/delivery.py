@@ -12,38 +12,48 @@ from typing import Literal, NamedTuple
 
 from ikteach.files import read_json, write_whole
 
+PACKAGE = Path(__file__).resolve().parents[1]
 MANIFEST = ".ikteach.json"
-MOST = 100 * 2**20  # bytes of a notebook, outputs and all
+LARGEST_NOTEBOOK = 100 * 2**20  # bytes of a notebook, outputs and all
 
 Outcome = Literal["copied", "restored", "updated", "current", "kept"]
 Manifest = dict[str, str]
 
 
-class Course(NamedTuple):
-    """The folder of notebooks, and whether it is a clone's, in which one may work directly."""
+class CourseFolder(NamedTuple):
+    """A folder of notebooks, of a clone or a wheel.
+
+    In a clone one may work directly.
+    """
 
     notebooks: Path
     clone: bool
 
 
 class Delivery(NamedTuple):
-    """What became of one file; `beside` names the newer version put next to a kept one."""
+    """The outcome for one file.
+
+    `beside` names the newer version put next to a kept one.
+    """
 
     name: str
     outcome: Outcome
     beside: str = ""
 
 
-def find_course(package: Path) -> Course:
-    """The course that belongs to this package folder: its clone's, or the one in its wheel."""
-    clone = package.parent
+def find_course() -> CourseFolder:
+    """Find the course: of the clone, or in the wheel."""
+    clone = PACKAGE.parent
     if (clone / "pyproject.toml").is_file() and (clone / "notebooks").is_dir():
-        return Course(clone / "notebooks", clone=True)
-    return Course(package / "notebooks", clone=False)
+        return CourseFolder(clone / "notebooks", clone=True)
+    return CourseFolder(PACKAGE / "notebooks", clone=False)
 
 
 def course_files(notebooks: Path) -> list[str]:
-    """Names of all files of the course, relative and with `/`; nothing hidden, nobody's answers."""
+    """List all files of the course, relative, with `/`.
+
+    Nothing hidden, nobody's answers.
+    """
     files = (path.relative_to(notebooks) for path in notebooks.rglob("*") if path.is_file())
     hidden = (".", "__pycache__", "predictions.")
     return sorted(
@@ -52,15 +62,18 @@ def course_files(notebooks: Path) -> list[str]:
 
 
 def chapters(notebooks: Path) -> dict[str, str]:
-    """File name -> title of each chapter, in the course's order."""
+    """List the chapters in order: file name -> title."""
     names = [name for name in course_files(notebooks) if PurePosixPath(name).match("*.ipynb")]
     return {name: title(notebooks / name) for name in names if "/" not in name}
 
 
 def title(notebook: Path) -> str:
-    """The first `# ` heading of the notebook's first markdown cell; empty where there is none."""
+    """Find the title of a notebook.
+
+    The first `# ` heading of its first markdown cell; empty where there is none.
+    """
     try:
-        cells = read_json(notebook, MOST)["cells"]
+        cells = read_json(notebook, LARGEST_NOTEBOOK)["cells"]
         prose = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "markdown"]
     except (OSError, ValueError, KeyError, TypeError):
         return "(not a readable notebook)"
@@ -69,9 +82,10 @@ def title(notebook: Path) -> str:
 
 
 def decide(ours: str, theirs: str | None, delivered: str | None) -> Outcome:
-    """What to do with a file, from its hashes: ours now, the student's, ours of the last time.
+    """Decide what to do with a file, from hashes.
 
-    None stands for no file, and for never delivered.
+    Of ours now, of the student's, and of ours of the last time. None stands for no file, and for
+    never delivered.
     """
     if theirs is None:
         return "copied" if delivered is None else "restored"
@@ -81,7 +95,7 @@ def decide(ours: str, theirs: str | None, delivered: str | None) -> Outcome:
 
 
 def deliver(notebooks: Path, folder: Path) -> list[Delivery]:
-    """Copy the course into `folder`, as far as that loses nothing of the student's."""
+    """Copy the course into `folder`, losing nothing of the student's."""
     if folder.exists() and not folder.is_dir():
         raise NotADirectoryError(errno.ENOTDIR, "It is a file, not a folder", str(folder))
     names = course_files(notebooks)
@@ -97,8 +111,11 @@ def deliver(notebooks: Path, folder: Path) -> list[Delivery]:
     return deliveries
 
 
-def told(deliveries: list[Delivery], folder: Path) -> list[str]:
-    """What was done, a sentence each: new files are counted, all others are named."""
+def report(deliveries: list[Delivery], folder: Path) -> list[str]:
+    """Tell what was done, a sentence each.
+
+    New files are counted, all others are named.
+    """
     new = [delivery.name for delivery in deliveries if delivery.outcome == "copied"]
     count = sum(name.endswith(".ipynb") for name in new)
     others = f", other files: {len(new) - count}" if len(new) > count else ""
@@ -138,9 +155,12 @@ def _put(folder: Path, name: str, data: bytes, manifest: Manifest) -> Outcome:
 
 
 def read_manifest(folder: Path) -> Manifest:
-    """File name -> SHA-256 as last delivered; empty where it is missing or damaged."""
+    """Read file name -> SHA-256 as last delivered.
+
+    Empty where it is missing or damaged.
+    """
     try:
-        manifest = read_json(folder / MANIFEST, MOST)
+        manifest = read_json(folder / MANIFEST, LARGEST_NOTEBOOK)
         return {name: digest for name, digest in manifest.items() if isinstance(digest, str)}
     except (FileNotFoundError, ValueError, AttributeError):
         return {}  # then every file that differs counts as the student's, and is kept

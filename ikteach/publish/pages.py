@@ -16,35 +16,36 @@ from pygments.formatters import HtmlFormatter
 from ikteach.markup import Markup
 
 WIDGET = "application/vnd.jupyter.widget-view+json"
-STYLE = (Path(__file__).parent / "pages.css").read_text("utf-8")
+PAGE_STYLE = (Path(__file__).parent / "pages.css").read_text("utf-8")
 
 
 class MathML(IPythonRenderer):
     """Markdown whose formulas become MathML, which browsers set by themselves."""
 
     def block_math(self, body: str) -> str:
-        """A formula on a line of its own."""
+        """Set a formula on a line of its own."""
         return convert(body.strip(), display="block")
 
     def inline_math(self, body: str) -> str:
-        """A formula in a sentence."""
+        """Set a formula in a sentence."""
         return convert(body.strip())
 
     def latex_environment(self, name: str, body: str) -> str:
-        """An environment such as align."""
+        """Set an environment such as align."""
         return convert(rf"\begin{{{name}}}{body}\end{{{name}}}", display="block")
 
 
 def runner(notebook: Any, folder: Path, **options: Any) -> NotebookClient:
-    """What runs a notebook in a fresh kernel whose working directory is `folder`."""
+    """Make a client that runs a notebook in `folder`."""
     resources = {"metadata": {"path": str(folder)}}
     quiet = ["--log-level=ERROR"]  # not the news that a kernel listens on this machine
     return NotebookClient(notebook, resources=resources, extra_arguments=quiet, **options)
 
 
 def page(path: Path, titles: Mapping[str, str]) -> str:
-    """The page of the notebook at `path`, which is run in its own folder.
-    nbclient's CellExecutionError if a cell fails.
+    """Run the notebook at `path`, and make its page.
+
+    It runs in its own folder. nbclient's CellExecutionError if a cell fails.
     """
     notebook = nbformat.read(path, as_version=4)
     runner(notebook, path.parent, timeout=300, store_widget_state=False).execute()
@@ -52,8 +53,9 @@ def page(path: Path, titles: Mapping[str, str]) -> str:
     for cell in notebook.cells:
         for output in cell.get("outputs", []):
             _still(output)
-    exporter = HTMLExporter(template_name="basic", exclude_input_prompt=True,
-                            exclude_output_prompt=True)  # fmt: skip
+    exporter = HTMLExporter(
+        template_name="basic", exclude_input_prompt=True, exclude_output_prompt=True
+    )
     exporter.register_filter("markdown2html", _markdown)
     exporter.register_filter("highlight_code", _highlight)
     body, _ = exporter.from_notebook_node(notebook)
@@ -80,7 +82,7 @@ def _link(titles: Mapping[str, str], name: str | None, arrow: str = "") -> Marku
 
 
 def index(titles: Mapping[str, str]) -> str:
-    """The list of chapters."""
+    """Make the page that lists the chapters."""
     rows = Markup().join(Markup("<li>{}</li>").format(_link(titles, name)) for name in titles)
     text = Markup("<p>To read. Live figures need a kernel: <code>python -m ikteach</code>.</p>")
     heading = "Inverse kinematics"
@@ -89,12 +91,12 @@ def index(titles: Mapping[str, str]) -> str:
 
 
 def document(title: str, body: Markup) -> Markup:
-    """A whole page."""
+    """Make a whole page."""
     return Markup(
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         "<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n{}\n</body>\n</html>\n"
-    ).format(title, Markup(STYLE), Markup(_colours()), body)
+    ).format(title, Markup(PAGE_STYLE), Markup(_colours()), body)
 
 
 def _colours() -> str:

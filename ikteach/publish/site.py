@@ -19,9 +19,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ikteach.markup import Markup
-from ikteach.publish import builds
+from ikteach.publish import builds, delivery
 from ikteach.publish.delivery import MANIFEST, Manifest, chapters, find_course, read_manifest
-from ikteach.publish.parser import Parser
+from ikteach.publish.parser import Parser, RefusedError
 
 PYODIDE = "314.0.6"
 PYODIDE_ADDRESS = f"https://cdn.jsdelivr.net/pyodide/v{PYODIDE}/full"
@@ -32,13 +32,16 @@ CORE = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip
 LOCK = "pyodide-lock.json"
 KERNEL = "@jupyterlite/pyodide-kernel-extension"
 EXTENSIONS = (  # what a page needs to show the course's widgets, and the kernel
-    "@jupyter-widgets/jupyterlab-manager", "anywidget", "jupyter-threejs", "jupyterlab-datawidgets",
+    "@jupyter-widgets/jupyterlab-manager",
+    "anywidget",
+    "jupyter-threejs",
+    "jupyterlab-datawidgets",
     KERNEL,
-)  # fmt: skip
+)
 # The kernel's own packages; those named here are loaded while it starts, the rest when imported.
-START = ("micropip", "piplite", "ipykernel", "comm", "pyodide-kernel", "jedi", "ipython")
+PRELOADED = ("micropip", "piplite", "ipykernel", "comm", "pyodide-kernel", "jedi", "ipython")
 STANDINS = ("ipykernel-6", "piplite", "pyodide_kernel", "widgetsnbextension-4")
-PATIENCE = 60  # [s] without a byte
+TIMEOUT = 60  # [s] without a byte
 
 
 class Size(NamedTuple):
@@ -50,8 +53,8 @@ class Size(NamedTuple):
     packages: int
 
 
-def main(package: Path, argv: list[str]) -> int:
-    """`python -m ikteach site FOLDER`; the exit code."""
+def main(argv: list[str]) -> int:
+    """Build the site; give the exit code."""
     parser = Parser(
         prog="python -m ikteach site",
         description="Build the course as static files in FOLDER: any web server can hand them out, "
@@ -69,11 +72,12 @@ def main(package: Path, argv: list[str]) -> int:
     options = parser.parse_args(argv)
     try:
         folder = options.folder.expanduser().resolve()
-        size = build(package, folder, options.pyodide)
+        size = build(folder, options.pyodide)
     except ModuleNotFoundError as error:
-        return _refuse(f"{error.name} is not installed: pip install 'ikteach[site]'")
+        install = "pip install 'ikteach[site]'"
+        raise RefusedError(f"{error.name} is not installed: {install}") from None
     except (LookupError, ValueError) as error:
-        return _refuse(str(error.args[0]))
+        raise RefusedError(str(error.args[0])) from None
     print(
         f"built {folder}: {size.chapters} chapters, {size.packages} Python packages, "
         f"{size.files} files, {size.bytes / 1e6:.0f} MB; it asks nothing of any other place\n"
@@ -83,17 +87,13 @@ def main(package: Path, argv: list[str]) -> int:
     return 0
 
 
-def _refuse(sentence: str) -> int:
-    print(sentence, file=sys.stderr)
-    return 1
+def build(folder: Path, pyodide: str | None = None) -> Size:
+    """Build the site in `folder`.
 
-
-def build(package: Path, folder: Path, pyodide: str | None = None) -> Size:
-    """Build the site in `folder`, which appears only once it is complete.
-
-    LookupError or ValueError say in a sentence what is missing or in the way.
+    It appears only once it is complete. LookupError or ValueError say in a sentence what is missing
+    or in the way.
     """
-    notebooks = find_course(package).notebooks
+    notebooks = find_course().notebooks
     if folder.is_relative_to(notebooks.resolve()):
         raise ValueError(f"{folder} is among the notebooks themselves; name another folder.")
     if reason := hindrance(folder):
@@ -103,9 +103,7 @@ def build(package: Path, folder: Path, pyodide: str | None = None) -> Size:
         project, made = Path(room, "project"), Path(room, "site")
         builds.student(notebooks, project / "files")
         kernel = fetch_kernel(Path(room, "kernel"))
-        packages = distribution(
-            package, pyodide or PYODIDE_ADDRESS, project / "static" / "pyodide", kernel
-        )
+        packages = distribution(pyodide or PYODIDE_ADDRESS, project / "static" / "pyodide", kernel)
         extensions(project / "widgets", kernel)
         lay_out(project, made, kernel)
         titles = chapters(notebooks)
@@ -121,7 +119,10 @@ def build(package: Path, folder: Path, pyodide: str | None = None) -> Size:
 
 
 def hindrance(folder: Path) -> str:
-    """Why nothing may be built there, in a sentence; empty if something may."""
+    """Say why nothing may be built there.
+
+    Empty if something may.
+    """
     if not folder.exists():
         return ""
     if not folder.is_dir():
@@ -142,7 +143,7 @@ def hindrance(folder: Path) -> str:
 
 
 def contents(folder: Path) -> Manifest:
-    """File name -> SHA-256 of each file in the folder, but for the list of them itself."""
+    """List the files in the folder: name -> SHA-256."""
     from ikteach.publish.wheels import digest
 
     files = {p.relative_to(folder).as_posix(): p for p in folder.rglob("*") if p.is_file()}
@@ -150,7 +151,10 @@ def contents(folder: Path) -> Manifest:
 
 
 def fetch_kernel(folder: Path) -> Path:
-    """Unpack JupyterLite's Python kernel into `folder`; LookupError if it cannot be had."""
+    """Unpack JupyterLite's Python kernel into `folder`.
+
+    LookupError if it cannot be had.
+    """
     command = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
     command += ["--no-deps", "--target", str(folder), KERNEL_WHEEL]
     done = subprocess.run(command, capture_output=True, text=True)
@@ -160,8 +164,11 @@ def fetch_kernel(folder: Path) -> Path:
     return folder
 
 
-def distribution(package: Path, where: str, folder: Path, kernel: Path) -> list[str]:
-    """Put what the course needs of Python into `folder`; the names of its packages."""
+def distribution(where: str, folder: Path, kernel: Path) -> list[str]:
+    """Put what the course needs of Python into `folder`.
+
+    Returns the names of its packages.
+    """
     from ikteach.publish import wheels
 
     folder.mkdir(parents=True)
@@ -172,12 +179,12 @@ def distribution(package: Path, where: str, folder: Path, kernel: Path) -> list[
     for name in CORE:
         (folder / name).write_bytes(take(where, name))
     _agree_on_version(folder / "pyodide.mjs", where)
-    ours = [wheels.own(package, folder)]
+    ours = [wheels.own(delivery.PACKAGE, folder)]
     for wheel in (_extension(KERNEL, kernel) / "static" / "pypi").glob("*.whl"):
         if wheel.name.startswith(STANDINS):
             ours.append(Path(shutil.copy(wheel, folder)))
     python = whole["info"]["python"]
-    chosen = wheels.lock(whole["packages"], ours, START, folder, python)
+    chosen = wheels.lock(whole["packages"], ours, PRELOADED, folder, python)
     wanted = {one["file_name"]: one["sha256"] for one in chosen.values()}
     wanted = {name: sha256 for name, sha256 in wanted.items() if not (folder / name).exists()}
     if not is_address(where):
@@ -204,11 +211,14 @@ def is_address(where: str) -> bool:
 
 
 def take(where: str, name: str) -> bytes:
-    """One file of Pyodide's, from a folder or an address; LookupError if it is not there."""
+    """Read a file of Pyodide's, from folder or address.
+
+    LookupError if it is not there.
+    """
     try:
         if not is_address(where):
             return Path(where, name).read_bytes()
-        with urllib.request.urlopen(f"{where.rstrip('/')}/{name}", timeout=PATIENCE) as answer:
+        with urllib.request.urlopen(f"{where.rstrip('/')}/{name}", timeout=TIMEOUT) as answer:
             return bytes(answer.read())
     except OSError as error:  # of files and of the network
         reason = getattr(error, "reason", None) or error.strerror or error
@@ -224,7 +234,7 @@ def _agree_on_version(script: Path, where: str) -> None:
 
 
 def extensions(folder: Path, kernel: Path) -> None:
-    """Copy the JupyterLab extensions of EXTENSIONS: those installed, and the kernel's."""
+    """Copy the JupyterLab extensions, installed or the kernel's."""
     for name in EXTENSIONS:
         shutil.copytree(_extension(name, kernel), folder / name)
         facts = folder / name / "package.json"
@@ -248,7 +258,7 @@ def _extension(name: str, kernel: Path) -> Path:
 def lay_out(project: Path, made: Path, kernel: Path) -> None:
     """Have JupyterLite lay out the site `made` from the project."""
     settings = {
-        "loadPyodideOptions": {"packages": list(START)},
+        "loadPyodideOptions": {"packages": list(PRELOADED)},
         "disablePyPIFallback": True,  # what is not in the site is asked of nobody
     }
     page = {
@@ -283,7 +293,7 @@ def lay_out(project: Path, made: Path, kernel: Path) -> None:
 
 
 def start_page(titles: Mapping[str, str]) -> str:
-    """The first page: a link a chapter, and what to know before."""
+    """Make the first page: a link per chapter, and advice."""
     row = Markup('<li><a href="lab/index.html?path={}">{}</a></li>\n')
     rows = Markup().join(row.format(name, title) for name, title in titles.items())
     page = (Path(__file__).parent / "start.html").read_text("utf-8")

@@ -22,10 +22,10 @@ FACTS = {"METADATA", "entry_points.txt", "top_level.txt"}  # of the .dist-info t
 WHEEL = "Wheel-Version: 1.0\nGenerator: ikteach\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
 LONG_AGO = (1980, 1, 1, 0, 0, 0)  # the same wheel each time
 
-Entry = dict[str, Any]  # of a package in Pyodide's lock file
+LockEntry = dict[str, Any]  # of a package in Pyodide's lock file
 
 
-class Facts(NamedTuple):
+class Metadata(NamedTuple):
     """What a wheel says of itself."""
 
     name: str
@@ -35,7 +35,10 @@ class Facts(NamedTuple):
 
 
 def own(package: Path, folder: Path) -> Path:
-    """The wheel of ikteach itself, of a clone or as installed, made in `folder`."""
+    """Make the wheel of ikteach itself in `folder`.
+
+    Of a clone or as installed.
+    """
     clone = package.parent
     if not (clone / "pyproject.toml").is_file():
         return again("ikteach", folder)
@@ -45,7 +48,10 @@ def own(package: Path, folder: Path) -> Path:
 
 
 def again(name: str, folder: Path) -> Path:
-    """The wheel of an installed package, made again in `folder`; LookupError where none can be."""
+    """Make the wheel of an installed package again.
+
+    In `folder`; LookupError where none can be.
+    """
     try:
         installed = distribution(name)
     except PackageNotFoundError:
@@ -85,21 +91,22 @@ def _pure(installed: Distribution) -> dict[PurePosixPath, Path]:
             f"{name} is installed as a link to its source; install it as a wheel: pip install ."
         )
     return {
-        path: place for path, place in ours.items()
+        path: place
+        for path, place in ours.items()
         if path.suffix not in COMPILED
         and (path.suffix == ".py" or not FOR_PAGES & set(path.parts[:-1]))
         and (path.name in FACTS or not path.parts[0].endswith(".dist-info"))
-    }  # fmt: skip
+    }
 
 
-def facts(wheel: Path) -> Facts:
+def metadata(wheel: Path) -> Metadata:
     """Name, version, requirements and import names of a wheel."""
     with zipfile.ZipFile(wheel) as archive:
         names = archive.namelist()
         (place,) = (n for n in names if re.fullmatch(r"[^/]+\.dist-info/METADATA", n))
         said = HeaderParser().parsestr(archive.read(place).decode())
     tops = {PurePosixPath(n).parts[0] for n in names if n.endswith(".py")}
-    return Facts(
+    return Metadata(
         canonicalize_name(said["Name"]),
         said["Version"],
         [Requirement(line) for line in said.get_all("Requires-Dist", [])],
@@ -107,9 +114,9 @@ def facts(wheel: Path) -> Facts:
     )
 
 
-def entry(wheel: Path) -> Entry:
-    """The wheel in Pyodide's lock file, without what it depends on."""
-    name, version, _, imports = facts(wheel)
+def lock_entry(wheel: Path) -> LockEntry:
+    """Describe the wheel for Pyodide's lock file, without dependencies."""
+    name, version, _, imports = metadata(wheel)
     return {
         "name": name,
         "version": version,
@@ -124,17 +131,20 @@ def entry(wheel: Path) -> Entry:
 
 
 def lock(
-    pyodide: Mapping[str, Entry], wheels: Iterable[Path], roots: Iterable[str], folder: Path,
+    pyodide: Mapping[str, LockEntry],
+    wheels: Iterable[Path],
+    roots: Iterable[str],
+    folder: Path,
     python: str,
-) -> dict[str, Entry]:  # fmt: skip
-    """The packages that the wheels and the roots need, each with all that it depends on.
+) -> dict[str, LockEntry]:
+    """Choose all packages that the wheels and roots need.
 
     pyodide  the packages that Pyodide brings, by name
     folder   where the wheels are, and where those of further packages are made
     python   the version of Python in the browser
     """
-    chosen: dict[str, Entry] = {}
-    ours = {facts(wheel).name: wheel for wheel in wheels}
+    chosen: dict[str, LockEntry] = {}
+    ours = {metadata(wheel).name: wheel for wheel in wheels}
     todo = [*ours, *roots]
     while todo:
         name = canonicalize_name(todo.pop())
@@ -144,8 +154,8 @@ def lock(
             chosen[name] = pyodide[name]
         else:
             wheel = ours[name] if name in ours else again(name, folder)
-            chosen[name] = entry(wheel)
-            wanted = [one for one in facts(wheel).requires if _applies(one, python)]
+            chosen[name] = lock_entry(wheel)
+            wanted = [one for one in metadata(wheel).requires if _applies(one, python)]
             chosen[name]["depends"] = [canonicalize_name(one.name) for one in wanted]
             for one in wanted:
                 _fits(name, one, pyodide)
@@ -167,7 +177,7 @@ def _applies(one: Requirement, python: str) -> bool:
     return one.marker is None or one.marker.evaluate(here)
 
 
-def _fits(name: str, one: Requirement, pyodide: Mapping[str, Entry]) -> None:
+def _fits(name: str, one: Requirement, pyodide: Mapping[str, LockEntry]) -> None:
     brought = pyodide.get(canonicalize_name(one.name))
     if brought is not None and not one.specifier.contains(brought["version"], prereleases=True):
         raise LookupError(f"{name} needs {one}, and this Pyodide brings {brought['version']}.")

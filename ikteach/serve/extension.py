@@ -31,7 +31,7 @@ def _load_jupyter_server_extension(server: Any) -> None:
 
 
 def send_at_once(server: Any) -> None:
-    """Have the sockets of pages wait for nothing before they send."""
+    """Have the sockets of pages send without waiting."""
     from jupyter_server.services.kernels.websocket import KernelWebsocketHandler
 
     handler: Any = KernelWebsocketHandler
@@ -45,7 +45,7 @@ def send_at_once(server: Any) -> None:
 
 
 def watch_cells(server: Any) -> None:
-    """Have the server listen to what kernels say of cells, and to nothing else."""
+    """Have the server listen to kernels about cells only."""
     manager: Any = server.kernel_manager
     watch = manager.start_watching_activity
 

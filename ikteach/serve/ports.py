@@ -1,17 +1,20 @@
-"""What every server of ours is told on the command line, and what must hold before it starts."""
+"""Options that every server of ours takes, and what must hold before it starts."""
 
 import argparse
 import errno
 import importlib.util
 import socket
 
-from ikteach.publish.parser import shown
+from ikteach.checks import shown
+from ikteach.publish.parser import RefusedError
 
 
-def parse(parser: argparse.ArgumentParser, argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
-    """The options of `parser` and those of every server; and what the server's own program gets.
+def options(
+    parser: argparse.ArgumentParser, argv: list[str]
+) -> tuple[argparse.Namespace, list[str]]:
+    """Read the options of `parser` and of every server.
 
-    The latter is what follows `--`.
+    And what follows `--`: The latter is for the server's own program.
     """
     parser.add_argument("--no-browser", action="store_true", help="print the address only")
     parser.add_argument("--port", metavar="N", type=port_number, help="use exactly this port")
@@ -20,21 +23,22 @@ def parse(parser: argparse.ArgumentParser, argv: list[str]) -> tuple[argparse.Na
 
 
 def port_number(text: str) -> int:
-    """A port from the command line."""
+    """Read a port from the command line."""
     if not (text.isascii() and text.isdecimal() and len(text) < 6 and 1 <= int(text) <= 65535):
         raise argparse.ArgumentTypeError(f"{shown(text)} is not a port; ports are 1 to 65535")
     return int(text)
 
 
-def hindrance(server: str, module: str, extra: str, port: int | None) -> str:
-    """Why `server` cannot be started, in a sentence; empty if nothing is known to hinder it.
+def check_server(server: str, module: str, extra: str, port: int | None) -> None:
+    """Refuse a server that lacks its package or port.
 
-    module, extra  that it is, and the extra of this package with which it is installed
+    module, extra  its module, and the extra of this package with which it is installed
     """
     if importlib.util.find_spec(module) is None:
-        return f"{server} is not installed. Install it with: pip install 'ikteach[{extra}]'"
+        install = f"pip install 'ikteach[{extra}]'"
+        raise RefusedError(f"{server} is not installed. Install it with: {install}")
     if port is None:
-        return ""
+        return
     try:
         socket.create_server(("127.0.0.1", port)).close()
     except OSError as error:
@@ -42,5 +46,4 @@ def hindrance(server: str, module: str, extra: str, port: int | None) -> str:
         reason = str(error.strerror).partition(" (")[0]  # without the address that was tried
         problem = "is taken" if taken else f"cannot be used ({reason})"
         other = f"leave out --port to let {server} find a free one, or name another."
-        return f"Port {port} {problem}; {other}"
-    return ""
+        raise RefusedError(f"Port {port} {problem}; {other}") from None

@@ -21,9 +21,10 @@ SMALL = radians(0.1)  # [rad]; a joint that turns less in a frame counts as stan
 
 
 def capped(solver: Solver, max_step: float | None, chains: Index, cap: Cap = whole) -> Solver:
-    """`solver` with its step shortened to max_step [rad] by `cap`; None leaves it as it is.
+    """Shorten the step of `solver` to max_step [rad] by `cap`.
 
-    For races in which each method has a cap of its own. `Effectors.chains` are the chains.
+    None leaves it as it is. For races in which each method has a cap of its own. `Effectors.chains`
+    are the chains.
     """
 
     def shortened(J: Array, e: Array) -> Array:
@@ -35,7 +36,7 @@ def capped(solver: Solver, max_step: float | None, chains: Index, cap: Cap = who
 
 
 class Downhill(NamedTuple):
-    """What a step of the transpose promises and what it brings, for each gain (g,).
+    """Promise and effect of a transpose step, per gain (g,).
 
     promised  (g,)  ‖e − gain α JJᵀe‖², by the linear model [m²]
     actual    (g,)  ‖e‖² at θ + gain α Jᵀe [m²]
@@ -48,9 +49,9 @@ class Downhill(NamedTuple):
 def downhill(
     tree: Tree, effectors: Effectors, theta: ArrayLike, targets: ArrayLike, gains: ArrayLike
 ) -> Downhill:
-    """Squared error along the transpose's step from θ (n,) to targets (k, 3), for gains (g,).
+    """Measure the squared error along the transpose's step.
 
-    Limits are not asked.
+    From θ (n,) to targets (k, 3), for gains (g,). Limits are not asked.
     """
     (theta, goal), gains = checked(tree, theta, effectors, targets), numbers("gains", gains)
     if theta.ndim != 1 or goal.ndim != 2 or gains.ndim != 1:
@@ -68,11 +69,11 @@ def downhill(
 
 
 def starts(tree: Tree, count: int, *, spread: float = 0.5, seed: int = 0) -> Array:
-    """The rest pose and others at random, (count, n) [rad]; equal seeds give equal poses.
+    """Draw poses at random, the rest pose first: (count, n) [rad].
 
-    Each joint turns from rest towards one of its limits, at most by the share `spread` of the way,
-    from 0 to 1. A hinge's way is half a turn at most; that of a slide without a limit is as long as
-    all links of the body.
+    Equal seeds give equal poses. Each joint turns from rest towards one of its limits, at most by
+    the share `spread` of the way, from 0 to 1. A hinge's way is half a turn at most; that of a
+    slide without a limit is as long as all links of the body.
     """
     count, spread = whole_number("count", count, least=0), number("spread", spread)
     if spread > 1:
@@ -91,7 +92,7 @@ def starts(tree: Tree, count: int, *, spread: float = 0.5, seed: int = 0) -> Arr
 
 
 def nearby(theta: ArrayLike, count: int = 40, *, apart: float = 1e-12, seed: int = 0) -> Array:
-    """Make poses that hardly differ, θ (n,) the first of them: (count, n) [rad].
+    """Make poses that hardly differ from θ (n,): (count, n) [rad].
 
     No angle differs from that of θ by more than `apart` [rad]. If runs from them come to different
     things, they are chaotic: rounding decides, and a single one says nothing. Tell such runs by
@@ -103,10 +104,11 @@ def nearby(theta: ArrayLike, count: int = 40, *, apart: float = 1e-12, seed: int
 
 
 def reversals(run: Track) -> Array:
-    """How often a joint turns back, on average over joints and time, (...) [1/s].
+    """Count how often a joint turns back, (...) [1/s].
 
-    A reversal is a frame in which a joint turns against its turn of the frame before, by more than
-    0.1° both times. A joint that swings once a second has two a second.
+    On average over joints and time. A reversal is a frame in which a joint turns against its turn
+    of the frame before, by more than 0.1° both times. A joint that swings once a second has two a
+    second.
     """
     of_run(run)
     before = np.broadcast_to(run.start, run.theta.shape[1:])[None]
@@ -120,9 +122,10 @@ def reversals(run: Track) -> Array:
 def circle(
     times: ArrayLike, *, centre: ArrayLike = (2.4, 0.0, 0.0), radius: float = 0.8, turn: float = 2.0
 ) -> Array:
-    """A target that goes round in the plane z = const, at times (T,) [s]: (T, 1, 3) [m].
+    """Lead a target round a circle at times (T,) [s]: (T, 1, 3) [m].
 
-    `turn` is the time of one round [s]. With the arm of 3 m a quarter of this one is out of reach.
+    The plane is z = const, and `turn` the time of one round [s]. With the arm of 3 m a quarter of
+    this one is out of reach.
     """
     times, centre, turn = numbers("times", times), numbers("centre", centre), number("turn", turn)
     radius = number("radius", radius)
@@ -144,9 +147,10 @@ def iterations(
     most: int = 500,
     **options: Any,
 ) -> Array:
-    """Steps until every effector is within so many metres of its target (..., k, 3): (...).
+    """Count the steps until every effector reaches its target: (...).
 
-    Infinite where `most` steps are not enough. `options` go to `step`.
+    targets (..., k, 3) are reached `within` some metres. Infinite where `most` steps are not
+    enough. `options` go to `step`.
     """
     pose, goal = checked(tree, tree.rest if theta is None else theta, effectors, targets)
     within, most = number("within", within), whole_number("most", most, least=0)
@@ -173,9 +177,10 @@ def arrivals(
     within: float = 0.01,
     **options: Any,
 ) -> Array:
-    """`iterations` from so many poses to targets that as many others of the body meet, (poses,).
+    """Count `iterations` to targets that can be reached, (poses,).
 
-    All targets can be reached. The poses are the same at every call.
+    From as many poses to targets that other poses of the body meet. The poses are the same at every
+    call.
     """
     theta = starts(tree, poses + 1, spread=spread)[1:]
     other = starts(tree, poses + 1, spread=spread, seed=1)[1:]
@@ -194,10 +199,10 @@ def step_times(
     rounds: int = 15,
     **options: Any,
 ) -> dict[str, float]:
-    """Wall time of one step of each method [s], on targets (T, k, 3) from the rest pose.
+    """Time one step of each method [s], on targets (T, k, 3).
 
-    The methods take turns, round by round, and the median of the rounds is taken, so that what
-    else the machine does falls on all alike.
+    From the rest pose. The methods take turns, round by round, and the median of the rounds is
+    taken, so that what else the machine does falls on all alike.
     """
     pose, goals = checked(tree, tree.rest, effectors, targets)
     if goals.ndim != 3 or not len(goals):

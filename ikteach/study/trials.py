@@ -1,6 +1,7 @@
 """Chapter 8. A fair experiment: every method, from many poses, at several rates; its verdict."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,13 +10,14 @@ import pandas as pd
 from ikteach.arrays import Array, ArrayLike, Mask
 from ikteach.body import Effectors, Tree
 from ikteach.checks import count, number, numbers, shown
-from ikteach.motion import Gait, reachable, track
+from ikteach.motion import Gait, Track, reachable, track
 from ikteach.motion.methods import Methods, methods_of
 from ikteach.names import unknown
 from ikteach.solvers import SOLVERS
-from ikteach.study import after, columns_of, measures
+from ikteach.study.measures import columns_of, measures
+from ikteach.study.runs import after
 
-Caps = Mapping[str, float | None]  # a cap for each method [rad]; None: no cap
+Caps = Mapping[str, float | None]  # a cap per method [rad]; None: no cap
 
 
 def trials(
@@ -32,73 +34,97 @@ def trials(
     methods: Methods = SOLVERS,
     **options: Any,
 ) -> pd.DataFrame:
-    """The fair experiment: every method on every motion, under every set of caps, from every start.
+    """Run every method on every motion under all caps.
 
     motions   {name: gait}, or any function of times (T,) that gives targets (T, k, 3) [m] and has
               them by phase under `at`, as a `Gait` has
     caps      {name of the set: {method: cap [rad]}}
     starts    (s, n) poses to begin from [rad]
-    rates     frames a second, one step a frame
+    rates     frames per second, one step per frame
     settle    the first seconds of each run, which are left out of all measures
     can_reach (m, k) of `reachable_throughout`, where it is known already
     options   go to `step`, the same for all
 
-    Returns a row for each motion, set of caps, rate, start and method, with the measures of
-    `variants`; beside them the mean distance of the effectors that can `reach` their targets
-    through the whole cycle, and of those that cannot (`out_of_reach`); not a number where there
-    are none [m]. All runs of one method and rate go through one batch.
+    Returns a row per motion, set of caps, rate, start and method, with the measures of `variants`
+    and the mean distance [m] of the effectors that can `reach` their targets through the whole
+    cycle, and of the others (`out_of_reach`); NaN where there are none.
     ValueError or LookupError says what of this does not fit.
     """
-    named, starts, rates = methods_of(methods), _starts(tree, starts), list(rates)
-    for rate in rates:
-        if not number("a rate", rate) * (seconds - settle) >= 1:
-            raise ValueError(
-                f"at {rate} frames per second none is left of {seconds} s after {settle} s"
-            )
+    named, poses = methods_of(methods), _poses(tree, starts)
+    rates = _rates(rates, seconds, settle)
     _check_caps(caps, named)
-    if can_reach is None:
-        can_reach = reachable_throughout(tree, effectors, motions)
-    can_reach = np.asarray(can_reach, dtype=bool)
-    if can_reach.shape != (len(motions), len(effectors)):
-        wanted = len(motions), len(effectors)
-        raise ValueError(f"can_reach needs the shape {wanted}, not {can_reach.shape}")
-    rows = []
+    can_reach = _can_reach(tree, effectors, motions, can_reach)
+    theta = np.broadcast_to(poses, (len(caps), len(motions), *poses.shape))
+    rows: list[dict[str, Any]] = []
     for rate in rates:
         times = np.arange(1, round(seconds * rate) + 1) / rate
         targets = _targets(effectors, motions, times, by_phase=False).swapaxes(0, 1)
+        targets = targets[:, None, :, None]  # (T, caps, motions, starts, k, 3)
         for method, solver in named.items():
-            chosen = [group.get(method) for group in caps.values()]
-            bounds = [np.inf if bound is None else bound for bound in chosen]
+            cap = _caps(caps, method)
             run = track(
-                tree, effectors, targets[:, None, :, None], solver, times=times,
-                theta=np.broadcast_to(starts, (len(caps), len(motions), *starts.shape)),
-                max_step=np.array(bounds)[:, None, None], **options,
-            )  # fmt: skip
-            run = after(run, settle)
-            for c, m, s in np.ndindex(run.theta.shape[1:-1]):
-                error, reach = run.error[:, c, m, s], can_reach[m]
-                rows.append(
-                    {
-                        "motion": list(motions)[m],
-                        "caps": list(caps)[c],
-                        "rate": rate,
-                        "start": s,
-                        "method": method,
-                        **measures(run, (c, m, s)),
-                        "reach": error[:, reach].mean() if reach.any() else np.nan,
-                        "out_of_reach": error[:, ~reach].mean() if not reach.all() else np.nan,
-                    }
-                )
+                tree, effectors, targets, solver, times=times, theta=theta, max_step=cap, **options
+            )
+            run = replace(after(run, settle), method=method)
+            rows += _rows(run, can_reach, list(motions), list(caps), rate)
     table = pd.DataFrame(rows)
     table["method"] = pd.Categorical(table["method"], categories=list(named))
     return table
 
 
-def _starts(tree: Tree, starts: ArrayLike) -> Array:
+def _rows(
+    run: Track, can_reach: Mask, motions: list[str], caps: list[str], rate: int
+) -> Iterator[dict[str, Any]]:
+    """Measure each trial of a run of batch (caps, motions, starts)."""
+    for c, m, s in np.ndindex(run.theta.shape[1:-1]):
+        error, reach = run.error[:, c, m, s], can_reach[m]
+        yield {
+            "motion": motions[m],
+            "caps": caps[c],
+            "rate": rate,
+            "start": s,
+            "method": run.method,
+            **measures(run, (c, m, s)),
+            "reach": error[:, reach].mean() if reach.any() else np.nan,
+            "out_of_reach": error[:, ~reach].mean() if not reach.all() else np.nan,
+        }
+
+
+def _rates(rates: Iterable[int], seconds: float, settle: float) -> list[int]:
+    """Refuse rates at which no frame is left to be measured."""
+    rates = list(rates)
+    for rate in rates:
+        if not number("a rate", rate) * (seconds - settle) >= 1:
+            raise ValueError(
+                f"at {rate} frames per second none is left of {seconds} s after {settle} s"
+            )
+    return rates
+
+
+def _can_reach(
+    tree: Tree, effectors: Effectors, motions: Mapping[str, Gait], known: Mask | None
+) -> Mask:
+    """Find which effectors can reach (m, k), where it is not `known`."""
+    if known is None:
+        return reachable_throughout(tree, effectors, motions)
+    known = np.asarray(known, dtype=bool)
+    if known.shape != (len(motions), len(effectors)):
+        wanted = len(motions), len(effectors)
+        raise ValueError(f"can_reach needs the shape {wanted}, not {known.shape}")
+    return known
+
+
+def _poses(tree: Tree, starts: ArrayLike) -> Array:
     poses = numbers("starts", starts)
     if poses.ndim != 2 or poses.shape[1] != len(tree) or not len(poses):
         raise ValueError(f"starts need the shape (s, {len(tree)}), not {poses.shape}")
     return poses
+
+
+def _caps(caps: Mapping[str, Caps], method: str) -> Array:
+    """Give the cap of a method in each set [rad], (caps, 1, 1)."""
+    chosen = [group.get(method) for group in caps.values()]
+    return np.array([np.inf if cap is None else cap for cap in chosen])[:, None, None]
 
 
 def _check_caps(caps: Mapping[str, Caps], methods: Iterable[str]) -> None:
@@ -114,7 +140,7 @@ def _check_caps(caps: Mapping[str, Caps], methods: Iterable[str]) -> None:
 def _targets(
     effectors: Effectors, motions: Mapping[str, Gait], when: Array, *, by_phase: bool
 ) -> Array:
-    """The targets (m, T, k, 3) of each motion at times, or phases, (T,)."""
+    """Find the targets (m, T, k, 3) of each motion at times or phases (T,)."""
     if not (isinstance(motions, Mapping) and motions):
         raise ValueError(f"motions are {{name: gait}}, at least one, not {shown(motions)}")
     found = []
@@ -136,7 +162,7 @@ def _targets(
 def reachable_throughout(
     tree: Tree, effectors: Effectors, motions: Mapping[str, Gait], phases: int = 8
 ) -> Mask:
-    """Which effectors reach their targets in every one of so many phases of each motion: (m, k)."""
+    """Tell which effectors reach their targets in all phases: (m, k)."""
     angles = np.linspace(0, 2 * np.pi, count("phases", phases), endpoint=False)
     targets = _targets(effectors, motions, angles, by_phase=True)
     return np.asarray(reachable(tree, effectors, targets).all(axis=1))
@@ -147,7 +173,7 @@ def spread(
     measures: Iterable[str] = ("mean", "jitter", "reversals"),
     by: Iterable[str] = ("caps", "motion", "method"),
 ) -> pd.DataFrame:
-    """Mean and standard deviation of measures of `trials`, over starts and rates."""
+    """Average measures of `trials` over starts and rates."""
     by, measures = columns_of(table, by), columns_of(table, measures, numeric=True)
     return table.groupby(by, observed=True)[measures].agg(["mean", "std"])
 
@@ -155,9 +181,9 @@ def spread(
 def ranking(
     table: pd.DataFrame, measure: str, by: Iterable[str] = ("caps", "motion")
 ) -> pd.DataFrame:
-    """The methods in order of a measure of `trials`, the least first, a row for each value of `by`.
+    """Rank the methods by a measure of `trials`.
 
-    order   the methods by their mean over starts and rates
+    order   the methods by their mean over starts and rates, the least first
     wins    in what share of the trials the first has less than the second: 1 is a clear verdict,
             ½ is a toss-up
 
@@ -170,10 +196,8 @@ def ranking(
         raise ValueError("a ranking needs trials of two methods or more")
     rows: dict[Any, dict[str, Any]] = {}
     for key, part in table.groupby(by, observed=True):
-        wide = part.pivot_table(
-            index=["motion", "caps", "rate", "start"], columns="method", values=measure,
-            observed=True,
-        )  # fmt: skip
+        trial = ["motion", "caps", "rate", "start"]
+        wide = part.pivot_table(measure, index=trial, columns="method", observed=True)
         order = list(wide.mean().sort_values().index)
         if len(order) < 2:  # nothing was measured, as of `reach` where nothing can be reached
             rows[key] = {"order": " < ".join(order), "first": "", "wins": np.nan}
@@ -191,22 +215,15 @@ def claims(
     times: Mapping[str, float],
     arrivals: Mapping[str, float],
 ) -> pd.DataFrame:
-    """Sentences about the methods, each held against the numbers: a row for each.
+    """Hold claims about the methods against the numbers.
 
     table     of `trials`
     reach     {motion: (k,)} of `reachable_throughout`, in the thesis's order: feet, then hands
-    times     seconds a step, of `step_times`
+    times     seconds per step, of `step_times`
     arrivals  steps until the target, of `iterations`
     SDLS counts as slower where it takes over a tenth more time than DLS, of which it is a variant.
     """
-    for what, needed, given in (
-        ("motion", ("walking", "running"), reach),
-        ("method", SOLVERS, times),
-        ("method", SOLVERS, arrivals),
-    ):
-        for name in needed:
-            if name not in given:
-                raise LookupError(f"the claims are about {name!r}: {unknown(what, name, given)}")
+    _check_known(reach, times, arrivals)
     walk, run = np.asarray(reach["walking"]), np.asarray(reach["running"])
     total = {name: times[name] * arrivals[name] for name in times}
     pace, wait = _ratios(times), _ratios(total)
@@ -215,23 +232,41 @@ def claims(
         [ranking(table, measure)["first"] == "sdls" for measure in ("mean", "jitter", "reversals")]
     ).mean()
     feet, hands = walk[:2].sum(), walk[2:].sum()
-    slower, not_slower = "SDLS is slower", "SDLS is not slower"
     rows = [
-        ("thesis 5.2", "walking: both feet reach, no hand", "nearest pose",
-         feet == 2 and hands == 0, f"{feet} feet, {hands} hands"),
-        ("thesis 5.2", "running: none of the four reach", "nearest pose",
-         not run.any(), f"{run.sum()} of {run.size}"),
-        ("thesis 5.3", slower, "time a step", pace["dls"] > 1.1, _told(pace)),
-        ("thesis 5.3", slower, "time to arrive", wait["dls"] > 1.1, _told(wait)),
-        ("thesis 7.1", not_slower, "time a step", pace["dls"] <= 1.1, _told(pace)),
-        ("thesis 7.1", not_slower, "time to arrive", wait["dls"] <= 1.1, _told(wait)),
-        ("often said", "the transpose is the jerkiest", "jitter, last",
-         last == 1, f"in {last:.0%} of the cases"),
-        ("often said", "SDLS is best in all", "distance, jitter, reversals",
-         firsts == 1, f"first in {firsts:.0%} of the cases"),
-    ]  # fmt: skip
-    columns = ["source", "says", "measured by", "holds", "numbers"]
-    return pd.DataFrame(rows, columns=columns).astype({"holds": bool})
+        ("thesis 5.2", "walking: both feet reach, no hand", "nearest pose"),
+        ("thesis 5.2", "running: none of the four reach", "nearest pose"),
+        ("thesis 5.3", "SDLS is slower", "time per step"),
+        ("thesis 5.3", "SDLS is slower", "time to arrive"),
+        ("thesis 7.1", "SDLS is not slower", "time per step"),
+        ("thesis 7.1", "SDLS is not slower", "time to arrive"),
+        ("often said", "the transpose is the jerkiest", "jitter, last"),
+        ("often said", "SDLS is best in all", "distance, jitter, reversals"),
+    ]
+    table = pd.DataFrame(rows, columns=["source", "says", "measured by"])
+    slower = [ratios["dls"] > 1.1 for ratios in (pace, wait)]
+    holds = [feet == 2 and hands == 0, not run.any(), *slower, *np.logical_not(slower)]
+    table["holds"] = np.array([*holds, last == 1, firsts == 1], dtype=bool)
+    table["numbers"] = [
+        f"{feet} feet, {hands} hands",
+        f"{run.sum()} of {run.size}",
+        *map(_told, [pace, wait, pace, wait]),
+        f"in {last:.0%} of the cases",
+        f"first in {firsts:.0%} of the cases",
+    ]
+    return table
+
+
+def _check_known(
+    reach: Mapping[str, Mask], times: Mapping[str, float], arrivals: Mapping[str, float]
+) -> None:
+    for what, needed, given in (
+        ("motion", ("walking", "running"), reach),
+        ("method", SOLVERS, times),
+        ("method", SOLVERS, arrivals),
+    ):
+        for name in needed:
+            if name not in given:
+                raise LookupError(f"the claims are about {name!r}: {unknown(what, name, given)}")
 
 
 def _ratios(times: Mapping[str, float]) -> dict[str, float]:

@@ -1,6 +1,6 @@
 """The site: built, handed out by a plain web server, and opened with every other place shut.
 
-Python's packages compiled for the browser are in no registry that tests reach (tests/pyodide.py):
+The tests reach no registry of Python packages compiled for the browser (tests/tools/pyodide.py):
 what needs numpy is not run here. Everything before it is: the kernel starts, `import ikteach` in a
 notebook as it was committed brings our wheel and all that it names, widgets live, WebGL draws.
 """
@@ -20,8 +20,8 @@ from playwright.sync_api import Browser, Page, Route
 from ikteach import __main__ as cli
 from ikteach.publish import site, wheels
 from ikteach.publish.delivery import chapters, course_files
-from tests import pyodide
 from tests.browser.conftest import READY, ROOT, SHOTS, open_page
+from tests.tools import pyodide
 
 NOTEBOOKS = ROOT / "notebooks"
 START = 150_000  # [ms] what a kernel may take to start on a slow machine

@@ -356,7 +356,7 @@ def test_whatever_is_raised_is_one_short_sentence(
 ) -> None:
     sentence = said("xx.double", raising(error))
     assert words in sentence
-    assert len(sentence) <= checking.LONGEST
+    assert len(sentence) <= checking.LONGEST_SENTENCE
     if not isinstance(error, Exception):  # nor is one taken for an error that was asked for
         assert words in said("xx.refuse", raising(error))
     assert (folder / "predictions.json").stat().st_size < 5000

@@ -139,7 +139,7 @@ def test_a_file_that_comes_meanwhile_is_kept(tmp_path):
 def test_what_cannot_be_made_is_refused_before_it_costs_time(tmp_path, name, asked, sentence):
     asked = {"size": (64, 48), "rate": 30} | asked
     with pytest.raises(ValueError, match=sentence):
-        movie.check(tmp_path / name, **asked)
+        movie.kind_of(tmp_path / name, **asked)
     with pytest.raises(ValueError, match=sentence):
         movie.write(tmp_path / name, frames(2), **asked)
     assert os.listdir(tmp_path) == []

@@ -53,16 +53,16 @@ def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     notebook.cells[1].outputs = [nbformat.v4.new_output("stream", text="old")]
     nbformat.write(notebook, notebooks / "00_figure.ipynb")
 
-    monkeypatch.setattr(builds, "find_course", lambda package: builds_course(notebooks))
+    monkeypatch.setattr(builds, "find_course", lambda: builds_course(notebooks))
     monkeypatch.setattr(builds, "solution", lambda key: SOLUTIONS[key])
     monkeypatch.chdir(tmp_path)
     return notebooks
 
 
 def builds_course(notebooks: Path) -> Any:
-    from ikteach.publish.delivery import Course
+    from ikteach.publish.delivery import CourseFolder
 
-    return Course(notebooks, clone=True)
+    return CourseFolder(notebooks, clone=True)
 
 
 SOLUTIONS = {"00.hand": "def hand(t, a):\n    return a"}

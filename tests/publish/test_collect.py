@@ -13,7 +13,7 @@ from ikteach.__main__ import main
 from ikteach.course import export, predict, quiz, record, reveal
 from ikteach.course.record import store
 from ikteach.course.widget import Question
-from ikteach.publish.collect import FIRST, SKIPPED, collect, harmless, summary
+from ikteach.publish.collect import LEADING, SKIPPED, collect, harmless, summarise
 
 OPTIONS = ["fewer", "more"]
 
@@ -49,7 +49,7 @@ def handed_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_every_answer_is_a_row(handed_in: Path) -> None:
     table, logs, skipped = collect(handed_in)
     assert skipped == {}
-    assert list(table.columns[: len(FIRST)]) == FIRST
+    assert list(table.columns[: len(LEADING)]) == LEADING
     assert len(table) == 8
     answers = table.pivot(index="key", columns="student", values="answer")
     assert answers.loc["03.half"].to_dict() == {"ada": "more", "bo": "fewer"}
@@ -65,7 +65,7 @@ def test_every_answer_is_a_row(handed_in: Path) -> None:
 
 
 def test_the_summary_says_how_many_and_what(handed_in: Path) -> None:
-    said = summary(collect(handed_in).table)
+    said = summarise(collect(handed_in).table)
     assert said.loc[("03.half", "prediction")].tolist() == [2, "50%", "fewer 1, more 1"]
     assert said.loc[("01.zeros", "prediction")].tolist() == [2, "–", "median 68"]
     assert said.loc[("03.alpha", "exercise"), "right"] == "50%"
@@ -78,7 +78,7 @@ def test_of_two_files_both_are_rows_and_the_newest_counts(handed_in: Path) -> No
     (handed_in / "bo" / "old" / "predictions.json").write_text(json.dumps(old))
     table = collect(handed_in).table
     assert len(table) == 12
-    assert summary(table).loc[("03.half", "prediction")].tolist()[2] == "fewer 1, more 1"
+    assert summarise(table).loc[("03.half", "prediction")].tolist()[2] == "fewer 1, more 1"
 
 
 @pytest.mark.parametrize(
@@ -320,4 +320,4 @@ def test_answers_of_any_age_are_counted(tmp_path: Path) -> None:
     (tmp_path / "bo.json").write_text(json.dumps({"predictions": {"01.x": {"answer": 5}}}))
     table, _, skipped = collect(tmp_path)
     assert skipped == {}
-    assert summary(table).loc[("01.x", "prediction"), "said"] == "median 4"
+    assert summarise(table).loc[("01.x", "prediction"), "said"] == "median 4"

@@ -28,7 +28,8 @@ from hypothesis import strategies as st
 
 from ikteach import __main__ as cli
 from ikteach.publish import delivery as opening
-from ikteach.publish.delivery import MANIFEST, Delivery, chapters, deliver, find_course, told
+from ikteach.publish.delivery import MANIFEST, Delivery, chapters, deliver, find_course, report
+from ikteach.serve import lab as serve
 
 ROOT = Path(__file__).resolve().parents[2]
 GAIT, STUDY = "07_gait.ipynb", "08_comparison.ipynb"
@@ -87,8 +88,8 @@ def clone(course: Path) -> Path:
 def lab(course: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
     """The commands with which JupyterLab would be run, in place of running it."""
     commands: list[list[str]] = []
-    monkeypatch.setattr(cli, "PACKAGE", course.parent)
-    monkeypatch.setattr(cli, "run", lambda command, environment: commands.append(command) or 0)
+    monkeypatch.setattr(opening, "PACKAGE", course.parent)
+    monkeypatch.setattr(serve, "run", lambda command, environment: commands.append(command) or 0)
     monkeypatch.chdir(tmp_path)
     return commands
 
@@ -101,7 +102,7 @@ def test_first_copy_has_everything_but_what_is_hidden(course: Path, home: Path) 
     assert outcomes(deliveries) == dict.fromkeys([GAIT, STUDY, "data/walk.csv"], "copied")
     assert set(tree(home)) == {GAIT, STUDY, "data/walk.csv", MANIFEST}
     assert (home / GAIT).read_bytes() == (course / GAIT).read_bytes()
-    assert told(deliveries, home) == [f"copied 2 notebooks to {home}, other files: 1"]
+    assert report(deliveries, home) == [f"copied 2 notebooks to {home}, other files: 1"]
 
 
 def test_second_copy_writes_nothing(course: Path, home: Path) -> None:
@@ -109,7 +110,7 @@ def test_second_copy_writes_nothing(course: Path, home: Path) -> None:
     before = {path: path.stat() for path in home.rglob("*")}
     deliveries = deliver(course, home)
     assert set(outcomes(deliveries).values()) == {"current"}
-    assert told(deliveries, home) == [f"nothing new for {home}"]
+    assert report(deliveries, home) == [f"nothing new for {home}"]
     after = {path: path.stat() for path in home.rglob("*")}
     assert {p: (s.st_ino, s.st_mtime_ns) for p, s in after.items() if p.is_file()} == {
         p: (s.st_ino, s.st_mtime_ns) for p, s in before.items() if p.is_file()
@@ -122,7 +123,7 @@ def test_changed_file_is_kept(course: Path, home: Path) -> None:
     deliveries = deliver(course, home)
     assert (home / GAIT).read_text() == "mine"
     assert set(tree(home)) == {GAIT, STUDY, "data/walk.csv", MANIFEST}  # our version is not newer
-    assert told(deliveries, home) == [f"kept yours: {GAIT}"]
+    assert report(deliveries, home) == [f"kept yours: {GAIT}"]
 
 
 def test_unchanged_file_is_updated(course: Path, home: Path) -> None:
@@ -130,7 +131,7 @@ def test_unchanged_file_is_updated(course: Path, home: Path) -> None:
     (course / GAIT).write_text("second edition")
     deliveries = deliver(course, home)
     assert (home / GAIT).read_text() == "second edition"
-    assert told(deliveries, home) == [f"updated: {GAIT}"]
+    assert report(deliveries, home) == [f"updated: {GAIT}"]
 
 
 def test_deleted_file_is_restored(course: Path, home: Path) -> None:
@@ -139,13 +140,13 @@ def test_deleted_file_is_restored(course: Path, home: Path) -> None:
     shutil.rmtree(home / "data")
     deliveries = deliver(course, home)
     assert tree(home)[GAIT] == (course / GAIT).read_bytes()
-    assert told(deliveries, home) == [f"restored: {GAIT}", "restored: data/walk.csv"]
+    assert report(deliveries, home) == [f"restored: {GAIT}", "restored: data/walk.csv"]
 
 
 def test_new_chapter_is_copied_and_counted(course: Path, home: Path) -> None:
     deliver(course, home)
     (course / "09_workbench.ipynb").write_text(notebook("# Workbench"))
-    assert told(deliver(course, home), home) == [f"copied 1 notebook to {home}"]
+    assert report(deliver(course, home), home) == [f"copied 1 notebook to {home}"]
 
 
 def test_newer_version_goes_beside_a_changed_file_once(course: Path, home: Path) -> None:
@@ -155,11 +156,11 @@ def test_newer_version_goes_beside_a_changed_file_once(course: Path, home: Path)
     deliveries = deliver(course, home)
     assert (home / GAIT).read_text() == "mine"
     assert (home / "07_gait.new.ipynb").read_text() == "second edition"
-    assert told(deliveries, home) == [
+    assert report(deliveries, home) == [
         f"kept yours: {GAIT}; the newer version is beside it: 07_gait.new.ipynb"
     ]
     (home / "07_gait.new.ipynb").unlink()  # read and thrown away: not brought back
-    assert told(deliver(course, home), home) == [f"kept yours: {GAIT}"]
+    assert report(deliver(course, home), home) == [f"kept yours: {GAIT}"]
     assert not (home / "07_gait.new.ipynb").exists()
 
 
@@ -179,13 +180,13 @@ def test_changed_version_beside_is_kept(course: Path, home: Path) -> None:
     (home / "07_gait.new.ipynb").write_text("mine too")
     (course / GAIT).write_text("second edition")
     for _ in range(2):
-        assert told(deliver(course, home), home) == [
+        assert report(deliver(course, home), home) == [
             f"kept yours: {GAIT}",
             "kept yours: 07_gait.new.ipynb",
         ]
     assert (home / "07_gait.new.ipynb").read_text() == "mine too"
     (home / "07_gait.new.ipynb").unlink()  # there is room now, and the edition is still owed
-    assert "beside" in told(deliver(course, home), home)[0]
+    assert "beside" in report(deliver(course, home), home)[0]
     assert (home / "07_gait.new.ipynb").read_text() == "second edition"
 
 
@@ -301,15 +302,16 @@ def test_title_of_an_odd_notebook(tmp_path: Path, text: str, title: str) -> None
     assert chapters(tmp_path) == {GAIT: title}
 
 
-def test_course_of_a_wheel_and_of_a_clone(tmp_path: Path) -> None:
+def test_course_of_a_wheel_and_of_a_clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     package = tmp_path / "ikteach"
+    monkeypatch.setattr(opening, "PACKAGE", package)
     (package / "notebooks").mkdir(parents=True)
     (tmp_path / "notebooks").mkdir()  # somebody's folder in site-packages: no clone
-    assert find_course(package) == (package / "notebooks", False)
+    assert find_course() == (package / "notebooks", False)
     (tmp_path / "pyproject.toml").touch()
-    assert find_course(package) == (tmp_path / "notebooks", True)
+    assert find_course() == (tmp_path / "notebooks", True)
     (tmp_path / "notebooks").rmdir()  # somebody's project that has the package copied into it
-    assert find_course(package) == (package / "notebooks", False)
+    assert find_course() == (package / "notebooks", False)
 
 
 # ---- the command line
@@ -366,10 +368,10 @@ def test_clone_is_copied_into_a_named_folder(
 
 def test_kernels_of_a_clone_find_its_package(course: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTHONPATH", "before")
-    monkeypatch.setattr(cli, "PACKAGE", course.parent)
-    in_wheel, in_clone = opening.Course(course, False), opening.Course(course, True)
-    assert cli.lab_environment(in_wheel)["PYTHONPATH"] == "before"
-    paths = cli.lab_environment(in_clone)["PYTHONPATH"].split(os.pathsep)
+    monkeypatch.setattr(opening, "PACKAGE", course.parent)
+    in_wheel, in_clone = opening.CourseFolder(course, False), opening.CourseFolder(course, True)
+    assert serve.environment(in_wheel)["PYTHONPATH"] == "before"
+    paths = serve.environment(in_clone)["PYTHONPATH"].split(os.pathsep)
     assert paths == [str(course.parents[1]), "before"]
 
 
@@ -515,7 +517,7 @@ def test_refusal_of_root_is_explained(
     monkeypatch.delattr(os, "geteuid", raising=False)  # as on Windows
     if user is not None:
         monkeypatch.setattr(os, "geteuid", lambda: user, raising=False)
-    monkeypatch.setattr(cli, "run", lambda command, environment: code)
+    monkeypatch.setattr(serve, "run", lambda command, environment: code)
     assert cli.main(["--", *extra]) == code
     assert ("python -m ikteach -- --allow-root" in capsys.readouterr().err) == hinted
 

@@ -61,14 +61,14 @@ HOSTILE = {
 @pytest.mark.parametrize("name", HOSTILE)
 def test_what_is_no_frame_is_refused_in_a_short_sentence(name: str) -> None:
     with pytest.raises(ValueError, match=r"^(it|its|a part of it) ") as refused:
-        gate.read(HOSTILE[name])
+        gate.read_frame(HOSTILE[name])
     assert len(str(refused.value)) < 120
 
 
 @given(st.lists(st.binary(max_size=30), max_size=16), st.sampled_from(["shell", "control"]))
 def test_what_jupyter_server_writes_is_read_as_it_reads_it(buffers, channel) -> None:
     made = frame(*GOOD, *buffers, channel=channel)
-    assert gate.read(made) == (channel, HEADER, {}, {}, {"comm_id": "c"})
+    assert gate.read_frame(made) == (channel, HEADER, {}, {}, {"comm_id": "c"})
     name, *parts = gate.split(made)
     assert (name.decode(), parts) == deserialize_msg_from_ws_v1(made)
 
@@ -88,7 +88,7 @@ def test_a_frame_with_one_byte_changed_is_read_or_refused(data) -> None:
     made = bytearray(frame())
     made[data.draw(st.integers(0, len(made) - 1))] = data.draw(st.integers(0, 255))
     try:
-        message = gate.read(bytes(made))
+        message = gate.read_frame(bytes(made))
     except ValueError:
         return
     assert all(isinstance(part, dict) for part in message[1:])
@@ -126,7 +126,7 @@ def test_nor_do_widgets_of_a_visitor_s_own_or_another_channel() -> None:
     assert not may("comm_open", target_name=["jupyter.widget.control"])
     for channel in ("control", "stdin", "iopub", "", "Shell", "no such"):
         assert not may("comm_msg", channel)
-    assert not gate.permitted(gate.read(frame().replace(b"shell", b"she\xff\xff")))
+    assert not gate.permitted(gate.read_frame(frame().replace(b"shell", b"she\xff\xff")))
 
 
 def test_an_allowance_is_spent_and_comes_back() -> None:

@@ -23,7 +23,7 @@ def served(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[Lecture]:
     """What would be served, in place of serving it."""
     made: list[Lecture] = []
     monkeypatch.setattr(Lecture, "start", lambda self: made.append(self))
-    monkeypatch.setenv(lecture.ROOM, "")
+    monkeypatch.setenv(lecture.OPEN_TO_ROOM, "")
     monkeypatch.setenv("PYTHONPATH", "")
     monkeypatch.chdir(tmp_path)
     return made
@@ -70,10 +70,10 @@ def test_alone_by_default_and_never_without_a_token(served: list[Lecture]) -> No
 
 
 def test_in_a_room_visitors_write_no_files(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv(lecture.ROOM, raising=False)
+    monkeypatch.delenv(lecture.OPEN_TO_ROOM, raising=False)
     mine = lecture.workbench()
     assert mine.recorder.comm is not None
-    monkeypatch.setenv(lecture.ROOM, "1")
+    monkeypatch.setenv(lecture.OPEN_TO_ROOM, "1")
     theirs = lecture.workbench()
     assert theirs.recorder.comm is None
     assert theirs.keeper.comm is None
@@ -174,7 +174,7 @@ def test_a_command_that_is_not_known_makes_no_folder(
         (["lecture", "--rom"], "'--rom'; did you mean --room?"),
         (["lecture", "--prot=8866"], "did you mean --port?"),
         (["lecture", "a", "b"], "there is no place for 'b'"),
-        (["lecture", "--" + "x" * 500], "x…'"),
+        (["lecture", "--" + "x" * 500], " … xxxxxxxxxxxxxx'"),
         (["lecture", "--port", "0"], "ports are 1 to 65535"),
         (["lecture", "--port", "9" * 5000], "ports are 1 to 65535"),
         (["lecture", "--port", "²"], "ports are 1 to 65535"),

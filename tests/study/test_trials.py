@@ -10,6 +10,7 @@ from ikteach import SOLVERS, figures, gait, study, track
 from ikteach.motion import BUSS_CAPS
 from ikteach.study import trials
 from ikteach.study.experiment import reversals, starts
+from ikteach.study.measures import measures
 
 HUMAN = figures.human()
 CAPS = {"equal": dict.fromkeys(SOLVERS, np.radians(30)), "own": BUSS_CAPS}
@@ -110,7 +111,7 @@ def test_claims_follow_the_numbers():
     assert "0.8 × dls" in table["numbers"][3]
 
 
-def test_variants_and_overview_are_what_single_runs_come_to():
+def test_variants_are_what_single_runs_come_to():
     times = np.arange(1, 11) / 30
     walk = gait.walking(times)
     batch = track(*HUMAN, walk[:, None], "sdls", theta=POSES, times=times)
@@ -120,7 +121,8 @@ def test_variants_and_overview_are_what_single_runs_come_to():
         name: track(*HUMAN, walk, "sdls", theta=pose, times=times)
         for name, pose in zip(table.index, POSES, strict=True)
     }
-    assert_allclose(table, study.overview(runs), rtol=1e-6, atol=1e-12)
+    single = [measures(run, ()) for run in runs.values()]
+    assert_allclose(table, pd.DataFrame(single), rtol=1e-6, atol=1e-12)
     assert set(study.MEASURES) | {"reversals"} == set(table.columns)
     with pytest.raises(ValueError, match="3 labels do not fit"):
         study.variants(batch, "abc")

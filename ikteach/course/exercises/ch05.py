@@ -87,8 +87,10 @@ def unit(answer: Answer) -> None:
             expect(
                 np.allclose(
                     dls(J * per_metre, e * per_metre, damping=other),
-                    dls(J, e, damping=damping), rtol=1e-7, atol=1e-12,
+                    dls(J, e, damping=damping),
+                    rtol=1e-7,
+                    atol=1e-12,
                 ),
                 f"With {per_metre:g} units to the metre and your λ = {other:.4g} the same pose and "
                 "target get another Δθ.",
-            )  # fmt: skip
+            )

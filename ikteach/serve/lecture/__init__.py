@@ -7,25 +7,32 @@ code; whoever opens one has a kernel of their own, which ends when the page is c
 import argparse
 import os
 import socket
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ikteach.publish.delivery import deliver, told
-from ikteach.publish.parser import Parser
-from ikteach.serve import ports
+from ikteach.publish.delivery import deliver, find_course, report
+from ikteach.publish.parser import Parser, RefusedError
+from ikteach.serve import lab, ports
 
 if TYPE_CHECKING:
     from ikteach.view.chapters.workbench import Workbench
 
 PAGES = Path(__file__).parent / "pages"
-FIRST = "workbench.ipynb"
+FIRST_PAGE = "workbench.ipynb"
 FOLDER = Path("ikteach-lecture")
-ROOM = "IKTEACH_ROOM"  # set for the kernels when others than the lecturer may open pages
+OPEN_TO_ROOM = "IKTEACH_ROOM"  # set for the kernels when others than the lecturer may open pages
 
 
-def parse(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
-    """Our options, and those for Voilà: what follows `--`."""
+def main(argv: list[str]) -> int:
+    """Show live figures as web pages; give the exit code."""
+    options, extra = _options(argv)
+    ports.check_server("Voilà", "voila", "lecture", options.port)
+    os.environ.update(lab.environment(find_course()))
+    return _show(options, extra)
+
+
+def _options(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
+    """Read our options, and those for Voilà: what follows `--`."""
     parser = Parser(
         prog="python -m ikteach lecture",
         usage="%(prog)s [FOLDER] [--room] [--no-browser] [--port N] [-- VOILÀ OPTIONS]",
@@ -47,25 +54,25 @@ def parse(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
         action="store_true",
         help="others in this network may open the pages, with the address that is printed",
     )
-    return ports.parse(parser, argv)
+    return ports.options(parser, argv)
 
 
-def show(options: argparse.Namespace, extra: list[str]) -> int:
+def _show(options: argparse.Namespace, extra: list[str]) -> int:
     """Copy the pages, and serve them until Ctrl-C."""
     try:
         from ikteach.serve.lecture.server import Lecture
     except ImportError as error:
-        told_of = f"Voilà is older than it must be, or a part of it is missing ({error})."
-        print(f"{told_of} Mend it with: pip install --upgrade 'ikteach[lecture]'", file=sys.stderr)
-        return 1
+        why = f"Voilà is older than it must be, or a part of it is missing ({error})."
+        mend = "pip install --upgrade 'ikteach[lecture]'"
+        raise RefusedError(f"{why} Mend it with: {mend}") from None
     folder = options.folder.expanduser().resolve()
-    print(*told(deliver(PAGES, folder), folder), sep="\n")
-    os.environ.pop(ROOM, None)
+    print(*report(deliver(PAGES, folder), folder), sep="\n")
+    os.environ.pop(OPEN_TO_ROOM, None)
     if options.room:
-        os.environ[ROOM] = "1"
+        os.environ[OPEN_TO_ROOM] = "1"
     browse = not options.no_browser
     try:
-        lecture = Lecture.of(folder, FIRST, options.port, room=options.room, browse=browse)
+        lecture = Lecture.of(folder, FIRST_PAGE, options.port, room=options.room, browse=browse)
         lecture.initialize(extra)
         lecture.start()
     except KeyboardInterrupt:  # before it serves: then it hears of it itself
@@ -74,17 +81,23 @@ def show(options: argparse.Namespace, extra: list[str]) -> int:
 
 
 def workbench() -> "Workbench":
-    """The workbench of a page; where others operate it, without the panel that writes files."""
+    """Make the workbench of a page.
+
+    Where others operate it, it keeps no files.
+    """
     from ikteach.view.chapters.workbench import Workbench
 
     bench = Workbench()
-    if os.environ.get(ROOM):
+    if os.environ.get(OPEN_TO_ROOM):
         bench.keep_no_files()
     return bench
 
 
 def own_address() -> str:
-    """The address of this machine in its network; nothing is sent to find it."""
+    """Find the address of this machine in its network.
+
+    Nothing is sent to find it.
+    """
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
             probe.connect(("192.0.2.1", 9))  # an address that is nobody's: a route is looked up

@@ -15,10 +15,10 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 PROTOCOL = "v1.kernel.websocket.jupyter.org"
-KINDS = ["comm_open", "comm_msg", "comm_close", "comm_info_request", "kernel_info_request"]
+PERMITTED = ["comm_open", "comm_msg", "comm_close", "comm_info_request", "kernel_info_request"]
 STATES = "jupyter.widget.control"  # the one comm that a page opens: to ask for all widgets' states
 FRAME = 2**20  # bytes
-PARTS = range(5, 22)  # channel, four of JSON, and up to 16 buffers
+PART_COUNTS = range(5, 22)  # channel, four of JSON, and up to 16 buffers
 DEPTH = 32  # of lists and objects in one another
 
 
@@ -32,8 +32,8 @@ class Message(NamedTuple):
     content: dict[str, Any]
 
 
-def read(frame: bytes | str) -> Message:
-    """Read a frame, or raise ValueError with the reason why it is none."""
+def read_frame(frame: bytes | str) -> Message:
+    """Read a frame; ValueError says why it is none."""
     if isinstance(frame, str):
         raise ValueError("it is text, where the protocol has binary frames")
     if len(frame) > FRAME:
@@ -46,7 +46,7 @@ def split(frame: bytes) -> list[bytes]:
     """Split a frame into its parts, or raise ValueError."""
     n = int.from_bytes(frame[:8], "little")
     start = 8 * (n + 1)
-    if n - 1 not in PARTS or len(frame) < start:
+    if n - 1 not in PART_COUNTS or len(frame) < start:
         raise ValueError(f"it claims {n:.3g} offsets in {len(frame)} bytes")
     offsets = struct.unpack_from(f"<{n}Q", frame, 8)
     ascending = all(a <= b for a, b in pairwise(offsets))
@@ -56,7 +56,7 @@ def split(frame: bytes) -> list[bytes]:
 
 
 def _object(part: bytes) -> dict[str, Any]:
-    """The JSON object that a part is, or ValueError."""
+    """Read a part that is a JSON object, or raise ValueError."""
     try:
         value = json.loads(part.decode())
         if isinstance(value, dict) and _depth(value) <= DEPTH:
@@ -74,17 +74,18 @@ def _depth(value: object) -> int:
 
 
 def permitted(message: Message) -> bool:
-    """Whether the message may reach the kernel: it moves or asks for widgets that are there.
+    """Decide whether the message may reach the kernel.
 
-    So no code runs that the page does not have, and no widget is made that it has not made.
+    It may if it moves or asks for widgets that are there. So no code runs that the page does not
+    have, and no widget is made that it has not made.
     """
     kind = message.header.get("msg_type")
     opens = kind == "comm_open" and message.content.get("target_name") != STATES
-    return message.channel == "shell" and kind in KINDS and not opens
+    return message.channel == "shell" and kind in PERMITTED and not opens
 
 
 class Allowance:
-    """What a visitor may spend: so much per second, and what was saved up in some seconds.
+    """An amount per second, and some seconds' worth saved up.
 
     rate   per second
     saved  seconds' worth that can be spent at once

@@ -39,9 +39,9 @@ from voila.tornado.kernel_websocket_handler import VoilaKernelWebsocketHandler
 from ikteach.serve import extension as server
 from ikteach.serve.lecture import PAGES, gate, own_address
 
-log = logging.getLogger(__name__)
-LOOK = Path(__file__).parent / "look"
-KERNEL, LAUNCHER = Path(__file__).with_name("kernel.py"), "ipykernel_launcher"
+logger = logging.getLogger(__name__)
+TEMPLATES = Path(__file__).parent / "look"
+KERNEL_SCRIPT, LAUNCHER = Path(__file__).with_name("kernel.py"), "ipykernel_launcher"
 PORT = 8866
 ASK_EVERY, ALONE = 30, 120  # [s] how often kernels are looked at; how long one lives without a page
 OPEN_EACH, OPEN_ALL = 6, 30  # pages, each a kernel: of one visitor, of all; a visitor is an address
@@ -65,15 +65,18 @@ kernel on this machine (about 150 MB); they can move the figures and run no code
 goes over the network is not encrypted."""
 
 
-class Quiet(KernelSpecManager):
-    """Kernels that are bounded, and tell of errors only: that one listens here is no news."""
+class BoundedKernels(KernelSpecManager):
+    """Kernels that are bounded, and tell of errors only.
+
+    That one listens here is no news.
+    """
 
     def get_kernel_spec(self, kernel_name: str) -> KernelSpec:
         """Start the kernel of that name by `kernel.py`."""
         spec = super().get_kernel_spec(kernel_name)
         if LAUNCHER in spec.argv:  # after `-m`, for which -P stands: import nothing from FOLDER
             at = spec.argv.index(LAUNCHER)
-            spec.argv[at - 1 : at + 1] = ["-P", str(KERNEL)]
+            spec.argv[at - 1 : at + 1] = ["-P", str(KERNEL_SCRIPT)]
         spec.argv = [*spec.argv, "--log-level=ERROR"]
         # Matrices of a figure are small: more threads would only be in one another's way.
         spec.env = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"} | spec.env
@@ -81,7 +84,7 @@ class Quiet(KernelSpecManager):
 
 
 class Kernels(AsyncMappingKernelManager):
-    """The kernels of all pages: a number for each visitor, and a number for all.
+    """The kernels of all pages, counted per visitor and together.
 
     visitors  kernel -> address of the visitor whose page it is
     """
@@ -89,7 +92,7 @@ class Kernels(AsyncMappingKernelManager):
     visitors: Any = Dict()
 
     async def start_kernel(self, **options: Any) -> str:  # type: ignore[override]
-        """Start a kernel for the visitor who asks for a page, or refuse."""
+        """Start a kernel for a visitor's page, or refuse."""
         visitor = CallContext.get(CallContext.JUPYTER_HANDLER).request.remote_ip
         if list(self.visitors.values()).count(visitor) >= OPEN_EACH:
             raise HTTPError(429, f"You have {OPEN_EACH} pages open. Close one, wait, and reload.")
@@ -109,33 +112,39 @@ class Kernels(AsyncMappingKernelManager):
         return super().remove_kernel(kernel_id)
 
     def start_buffering(self, kernel_id: str, *where: Any) -> None:
-        """Keep the newest messages for a page that has lost its socket."""
+        """Keep the newest messages for a page without a socket."""
         super().start_buffering(kernel_id, *where)  # type: ignore[no-untyped-call]
         self._kernel_buffers[kernel_id]["buffer"] = deque(maxlen=BUFFERED)
 
 
-class Told:
-    """Tells of an error in a sentence; Jupyter's own page of errors is not among what is served."""
+class PlainErrors:
+    """Tells of an error in a sentence.
+
+    Jupyter's own page of errors is not among what is served.
+    """
 
     def write_error(self: Any, status_code: int, exc_info: Any = (None, None), **_: Any) -> None:
-        """Send the sentence of the error, or what its number stands for."""
+        """Send the sentence of the error, or of its number."""
         self.set_header("Content-Type", "text/plain; charset=utf-8")
         self.finish(getattr(exc_info[1], "log_message", None) or self._reason)
 
 
-class Files(Told):
-    """Files of installed packages, by paths that lead down and nowhere else."""
+class Files(PlainErrors):
+    """Files of installed packages, by paths that lead down."""
 
     def parse_url_path(self, url_path: str) -> str:
-        """The path of a file, or 404."""
+        """Give the path of a file, or 404."""
         with suppress(AssertionError, ValueError):  # Voilà's, where a template is not named
             if ".." not in url_path.split("/"):
                 return str(super().parse_url_path(url_path))  # type: ignore[misc]
         raise HTTPError(404)
 
 
-class Page(Told, TornadoVoilaHandler):  # type: ignore[misc]
-    """A page, with the cookie that it shows when it is closed, so that its kernel may end."""
+class LecturePage(PlainErrors, TornadoVoilaHandler):  # type: ignore[misc]
+    """A page, with the cookie that it shows when closed.
+
+    So its kernel may end.
+    """
 
     async def get(self, path: str = "") -> None:
         """Send one of the lecture's own pages, figure by figure."""
@@ -145,8 +154,11 @@ class Page(Told, TornadoVoilaHandler):  # type: ignore[misc]
         await super().get(path)
 
 
-class Channels(Told, VoilaKernelWebsocketHandler):  # type: ignore[misc]
-    """The socket between a page and its kernel; who sends what is no message is turned out."""
+class Channels(PlainErrors, VoilaKernelWebsocketHandler):  # type: ignore[misc]
+    """The socket between a page and its kernel.
+
+    Who sends what is no message is turned out.
+    """
 
     sockets: ClassVar[Counter[str]] = Counter()  # kernel -> how many are open, or opening
     turned_out = False
@@ -169,7 +181,7 @@ class Channels(Told, VoilaKernelWebsocketHandler):  # type: ignore[misc]
                 del self.sockets[kernel_id]
 
     def select_subprotocol(self, subprotocols: list[str]) -> str:
-        """Speak the one protocol that can be guarded, whatever is configured."""
+        """Speak the one protocol that can be guarded."""
         return gate.PROTOCOL
 
     async def open(self, kernel_id: str) -> None:
@@ -186,7 +198,7 @@ class Channels(Told, VoilaKernelWebsocketHandler):  # type: ignore[misc]
         if not self._paid(len(frame)):
             return
         try:
-            message = gate.read(frame)
+            message = gate.read_frame(frame)
         except ValueError as reason:
             self._turn_out(f"it sent a frame that is none: {reason}")
             return
@@ -198,7 +210,7 @@ class Channels(Told, VoilaKernelWebsocketHandler):  # type: ignore[misc]
         self._paid(len(data))
 
     def write_message(self, message: Any, binary: bool = False) -> Any:
-        """Send a message, unless the page has not read those before."""
+        """Send a message, unless earlier ones are unread."""
         try:
             return super().write_message(message, binary)
         except StreamBufferFullError:
@@ -216,7 +228,7 @@ class Channels(Told, VoilaKernelWebsocketHandler):  # type: ignore[misc]
         if self.turned_out:
             return
         self.turned_out = True
-        log.error("A socket of %s is closed: %s.", self.request.remote_ip, reason)
+        logger.error("A socket of %s is closed: %s.", self.request.remote_ip, reason)
         try:
             self.close(1008)  # which stands for a breach of the rules
         except StreamBufferFullError:
@@ -224,7 +236,9 @@ class Channels(Told, VoilaKernelWebsocketHandler):  # type: ignore[misc]
 
 
 class Door(HTTPServer):
-    """Lets each visitor have so many connections; for a newer one the oldest is closed.
+    """Lets each visitor have a number of connections.
+
+    For a newer one the oldest is closed.
 
     waiting  address -> its connections, of which none has become a websocket
     """
@@ -243,7 +257,7 @@ class Door(HTTPServer):
         super().handle_stream(stream, address)
 
     def on_close(self, server_conn: Any) -> None:
-        """Forget a connection that has ended, or has become a websocket."""
+        """Forget a connection that has ended or is a websocket."""
         super().on_close(server_conn)
         for address, theirs in list(self.waiting.items()):
             if server_conn.stream in theirs:
@@ -256,7 +270,7 @@ class Door(HTTPServer):
 # served before somebody has looked at it. Pictures need none: a page holds those of its words.
 FILES = (TemplateStaticFileHandler, MultiStaticFileHandler, FileFindHandler, ThemesHandler)
 SERVED = {
-    TornadoVoilaHandler: Page,
+    TornadoVoilaHandler: LecturePage,
     VoilaKernelWebsocketHandler: Channels,
     KernelHandler: KernelHandler,
     VoilaShutdownKernelHandler: VoilaShutdownKernelHandler,
@@ -268,7 +282,7 @@ SETTINGS = {
         "allow_template_override": "NO",
         "allow_theme_override": "NO",
         "extension_allowlist": NEEDED,
-        "kernel_spec_manager_class": Quiet,
+        "kernel_spec_manager_class": BoundedKernels,
         "multi_kernel_manager_class": Kernels,
     },
     "MappingKernelManager": {"cull_interval": ASK_EVERY, "cull_idle_timeout": ALONE},
@@ -278,7 +292,10 @@ SETTINGS = {
 
 
 class Lecture(Voila):  # type: ignore[misc]
-    """Voilà on a folder of pages. Only who has the token gets in; nobody sees code or files."""
+    """Voilà on a folder of pages.
+
+    Only who has the token gets in; nobody sees code or files.
+    """
 
     first: str
     room: bool
@@ -288,7 +305,7 @@ class Lecture(Voila):  # type: ignore[misc]
     def of(
         cls, folder: Path, first: str, port: int | None, *, room: bool = False, browse: bool = True
     ) -> "Lecture":
-        """Serve the notebooks of `folder`, `first` at once; to this machine, or to a room."""
+        """Serve the notebooks of `folder`, here or to a room."""
         made = cls(config=Config(SETTINGS), root_dir=str(folder))
         made.first, made.room, made.browse = first, room, browse
         made.token = secrets.token_urlsafe(16)
@@ -306,17 +323,17 @@ class Lecture(Voila):  # type: ignore[misc]
     def setup_template_dirs(self) -> None:
         """Our look goes before that of Voilà, which it extends."""
         super().setup_template_dirs()
-        self.template_paths.insert(0, str(LOOK))
+        self.template_paths.insert(0, str(TEMPLATES))
 
     def init_settings(self) -> dict[str, Any]:
-        """The settings of the server; frames go out in time."""
+        """Make the settings; frames go out in time."""
         settings = dict(super().init_settings())
-        self.kernel_manager.allowed_message_types = gate.KINDS
+        self.kernel_manager.allowed_message_types = gate.PERMITTED
         server._load_jupyter_server_extension(self)
         return settings | {"websocket_max_message_size": gate.FRAME}
 
     def init_handlers(self) -> list[Any]:
-        """What is served of Voilà; the root is the first page."""
+        """List the handlers that are served; the root is `first`."""
         login = {handler: handler for _, handler, *_ in self.identity_provider.get_handlers()}
         served = SERVED | login
         pages = [
@@ -328,13 +345,16 @@ class Lecture(Voila):  # type: ignore[misc]
         return [(self.server_url, RedirectHandler, first), *pages]
 
     def listen(self) -> None:
-        """Listen at a door where requests are small, and do not take for ever to come."""
+        """Listen at a door where requests are small and quick."""
         door = Door(self.app, max_body_size=FORM, idle_connection_timeout=SLOW, body_timeout=SLOW)
         self.app.listen = door.listen
         super().listen()
 
     def start(self) -> None:
-        """Serve; that a page was closed while a frame was under way to it is no news."""
+        """Serve until Ctrl-C.
+
+        That a page was closed while a frame was under way to it is no news.
+        """
         logging.getLogger("asyncio").addFilter(
             lambda record: not (record.exc_info and record.exc_info[0] is WebSocketClosedError)
         )
@@ -345,12 +365,15 @@ class Lecture(Voila):  # type: ignore[misc]
         super().start()
 
     def stop(self) -> None:
-        """End all kernels at once: there is nothing of the visitors' to be kept."""
+        """End all kernels at once.
+
+        There is nothing of the visitors' to be kept.
+        """
         shutil.rmtree(self.connection_dir, ignore_errors=True)
         run_sync(self.kernel_manager.shutdown_all)(now=True)
 
     def launch_browser(self) -> None:
-        """Say where the first page is, now that the port is known, and open it."""
+        """Say where the first page is, and open it."""
         print(f"the lecture is at {self.address}", "Ctrl-C here ends it", sep="\n", flush=True)
         if self.room:
             print(TO_ALL, flush=True)

@@ -149,7 +149,7 @@ class Recorder(Cell):
         size = self.width.value, self.height.value
         options = {"size": size, "rate": self.rate.value, "overwrite": self.replace.value}
         try:
-            movie.check(path, **options)
+            movie.kind_of(path, **options)
         except FileExistsError:
             raise FileExistsError(
                 f"there is a file {str(path)!r} already; tick the box to replace it"

@@ -46,7 +46,7 @@ WRONG = {
     "08.experiment": [
         (worst_wins, "your own log says"),
         (unequal, "no fair race"),
-        (lambda: (run(("dls", "sdls")), "sdls"), "all four methods"),
+        (lambda: (run(("dls", "sdls")), "sdls"), "must hold transpose, pseudoinverse"),
         (lambda: (run(frames=5), "sdls"), "before one cycle"),
         (lambda: (run().drop(columns="jitter"), "sdls"), "no column"),
         (lambda: (np.zeros(3), "sdls"), "DataFrame"),

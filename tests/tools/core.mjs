@@ -1,17 +1,17 @@
 // Runs the tests of what computes in Pyodide: another LAPACK, integers of 32 bits, no threads.
 //
-//   node tests/core.mjs FOLDER [arguments for pytest]
+//   node tests/tools/core.mjs FOLDER [arguments for pytest]
 //
 // FOLDER is Pyodide's full distribution, unpacked. pytest and hypothesis are fetched from PyPI.
 
 import { dirname, resolve } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
 
-const CORE = ["body", "solvers", "motion", "test_study.py", "test_trials.py"];
+const CORE = ["body", "solvers", "motion", "study"];
 
 const [folder, ...given] = process.argv.slice(2);
 if (!folder) {
-  console.error("usage: node tests/core.mjs FOLDER [arguments for pytest]");
+  console.error("usage: node tests/tools/core.mjs FOLDER [arguments for pytest]");
   process.exit(2);
 }
 const { loadPyodide } = await import(pathToFileURL(resolve(folder, "pyodide.mjs")));
@@ -19,7 +19,7 @@ const pyodide = await loadPyodide({ indexURL: resolve(folder) + "/" });
 await pyodide.loadPackage(["micropip", "numpy", "pandas", "scipy", "pygments"]);
 await pyodide.pyimport("micropip").install(["pytest", "hypothesis"]);
 
-const root = dirname(dirname(fileURLToPath(import.meta.url)));
+const root = resolve(dirname(fileURLToPath(import.meta.url)), "../..");
 pyodide.FS.mkdirTree("/ikteach");
 pyodide.FS.mount(pyodide.FS.filesystems.NODEFS, { root }, "/ikteach");
 pyodide.globals.set("given", given.length ? given : CORE.map((one) => `tests/${one}`));

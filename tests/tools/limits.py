@@ -1,6 +1,6 @@
 """Run chapters as Python in a browser would, as far as that can be played here.
 
-    python tests/limits.py 09_workbench …
+    python tests/tools/limits.py 09_workbench …
 
 No thread, no process, no connection, no PyAV: what asks for one is refused and noted. The cells of
 each notebook run in a loop that is running already, then every button is pressed, and what the live
@@ -22,7 +22,7 @@ import warnings
 from pathlib import Path
 from typing import Any
 
-NOTEBOOKS = Path(__file__).parents[1] / "notebooks"
+NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
 asked: list[str] = []
 
 

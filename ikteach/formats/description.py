@@ -1,4 +1,4 @@
-"""What the JSON file of a session tells: written so that every reader can read it, read checked."""
+"""The description of a session in its JSON file: readable by every reader, read checked."""
 
 import math
 from collections import Counter
@@ -10,13 +10,13 @@ import numpy as np
 
 from ikteach.arrays import frozen
 from ikteach.body import Effectors, Joint, Tree
-from ikteach.files import HALF, plain, quoted
+from ikteach.files import HALF, jsonable, quoted
 from ikteach.motion.live.log import Event, Log
 from ikteach.motion.live.settings import in_words
 
-LONGEST = 200  # letters of a name
-MOST = {"method": 200, "effector": 1000, "joint": 2000}  # of each in a file
-KINDS: dict[type, str] = {
+LONGEST_NAME = 200  # letters of a name
+MOST_NAMES = {"method": 200, "effector": 1000, "joint": 2000}  # of each in a file
+JSON_KINDS: dict[type, str] = {
     dict: "names with their values",
     list: "a list",
     str: "text",
@@ -27,15 +27,15 @@ KINDS: dict[type, str] = {
 EVENT = {"run": int, "tick": int, "time": float, "kind": str, "what": dict}
 
 
-def settings(log: Log) -> dict[str, Any]:
-    """Tell all of a run but its numbers."""
+def describe(log: Log) -> dict[str, Any]:
+    """Describe all of a run but its numbers."""
     return {
         "rows": len(log) * len(log.methods),
         "dt": log.dt,
         "methods": list(log.methods),
-        "settings": plain(in_words(log.settings)),
+        "settings": jsonable(in_words(log.settings)),
         "dropped": dict(log.dropped),
-        "events": [plain(in_words(event._asdict())) for event in log.events],
+        "events": [jsonable(in_words(event._asdict())) for event in log.events],
         "figure": {
             "joints": list(_joints(log.tree)),
             "effectors": {
@@ -49,7 +49,7 @@ def settings(log: Log) -> dict[str, Any]:
 
 
 def _joints(tree: Tree) -> Iterator[dict[str, Any]]:
-    """The rows of the tree; a limit that is not there is null, for JSON has no infinity."""
+    """Write the rows of the tree; an infinite limit is null in JSON."""
     for j, name in enumerate(tree.names):
         parent = tree.names[tree.parents[j]] if tree.parents[j] >= 0 else None
         limits = {
@@ -57,26 +57,34 @@ def _joints(tree: Tree) -> Iterator[dict[str, Any]]:
             for side in ("lower", "upper")
         }
         yield {
-            "name": name, "parent": parent, "offset": tree.offsets[j].tolist(),
-            "axis": tree.axes[j].tolist(), "slide": bool(tree.slide[j]), **limits,
-            "rest": float(tree.rest[j]), "mobility": float(tree.mobility[j]),
-        }  # fmt: skip
+            "name": name,
+            "parent": parent,
+            "offset": tree.offsets[j].tolist(),
+            "axis": tree.axes[j].tolist(),
+            "slide": bool(tree.slide[j]),
+            **limits,
+            "rest": float(tree.rest[j]),
+            "mobility": float(tree.mobility[j]),
+        }
 
 
-def facts(told: dict[str, Any]) -> dict[str, Any]:
-    """What `Log` needs beside its numbers; ValueError says what is missing or wrong."""
-    tree, effectors = _figure(field(told, "figure", dict))
-    dt = field(told, "dt", float)
+def log_facts(given: dict[str, Any]) -> dict[str, Any]:
+    """Read all that `Log` needs beside its numbers.
+
+    ValueError says what is missing or wrong.
+    """
+    tree, effectors = _figure(field(given, "figure", dict))
+    dt = field(given, "dt", float)
     if dt <= 0:
         raise ValueError(f"'dt' is {dt}, and must be more than 0")
     return {
         "tree": tree,
         "effectors": effectors,
         "dt": dt,
-        "methods": names("method", field(told, "methods", list)),
-        "events": tuple(map(_event, field(told, "events", list))),
-        "settings": field(told, "settings", dict),
-        "dropped": _dropped(field(told, "dropped", dict)),
+        "methods": names("method", field(given, "methods", list)),
+        "events": tuple(map(_event, field(given, "events", list))),
+        "settings": field(given, "settings", dict),
+        "dropped": _dropped(field(given, "dropped", dict)),
     }
 
 
@@ -94,25 +102,30 @@ def _of_kind(value: Any, kind: type, what: str) -> Any:
     if kind is float and type(value) is int:
         value = float(value)
     if type(value) is not kind:
-        raise ValueError(f"{what} is {quoted(value)}, not {KINDS[kind]}")
+        raise ValueError(f"{what} is {quoted(value)}, not {JSON_KINDS[kind]}")
     return value
 
 
-def field(told: dict[str, Any], name: str, kind: type, of: str = "") -> Any:
-    """Give the value of that name, which must be there and of that kind."""
-    if name not in told:
+def field(given: dict[str, Any], name: str, kind: type, of: str = "") -> Any:
+    """Give the value of that name and kind, or refuse."""
+    if name not in given:
         raise ValueError(f"{name!r}{of} is missing")
-    return _of_kind(told[name], kind, f"{name!r}{of}")
+    return _of_kind(given[name], kind, f"{name!r}{of}")
 
 
 def names(what: str, names: list[Any]) -> tuple[str, ...]:
-    """Check the names of methods, joints or effectors: each is text, and there once."""
-    if not 0 < len(names) <= MOST[what]:
-        raise ValueError(f"there are {len(names)} {what}s, and from 1 to {MOST[what]:,} can be")
+    """Check the names of methods, joints or effectors.
+
+    Each is text, and there once.
+    """
+    if not 0 < len(names) <= MOST_NAMES[what]:
+        raise ValueError(
+            f"there are {len(names)} {what}s, and from 1 to {MOST_NAMES[what]:,} can be"
+        )
     for name in names:
-        if not (isinstance(name, str) and 0 < len(name) <= LONGEST) or HALF.search(name):
+        if not (isinstance(name, str) and 0 < len(name) <= LONGEST_NAME) or HALF.search(name):
             raise ValueError(
-                f"{quoted(name)} is no name of a {what}: text of up to {LONGEST} letters"
+                f"{quoted(name)} is no name of a {what}: text of up to {LONGEST_NAME} letters"
             )
     if twice := [name for name, count in Counter(names).items() if count > 1]:
         raise ValueError(f"there are two {what}s called {quoted(twice[0])}")
@@ -125,47 +138,47 @@ def _vector(value: Any, what: str) -> tuple[float, ...]:
     return tuple(_of_kind(one, float, what) for one in value)
 
 
-def _event(told: Any) -> Event:
+def _event(given: Any) -> Event:
     of = " of an event"
-    told = _of_kind(told, dict, "an event")
-    event = Event(*(field(told, name, kind, of) for name, kind in EVENT.items()))
+    given = _of_kind(given, dict, "an event")
+    event = Event(*(field(given, name, kind, of) for name, kind in EVENT.items()))
     if event.run < 0 or event.tick < 0:
         raise ValueError(f"'run' and 'tick'{of} must not be negative")
     return event
 
 
-def _dropped(told: dict[str, Any]) -> dict[str, int]:
-    dropped = {what: field(told, what, int, " in 'dropped'") for what in ("ticks", "events")}
+def _dropped(given: dict[str, Any]) -> dict[str, int]:
+    dropped = {what: field(given, what, int, " in 'dropped'") for what in ("ticks", "events")}
     if min(dropped.values()) < 0:
         raise ValueError("the numbers in 'dropped' must not be negative")
     return dropped
 
 
-def _joint(told: Any) -> Joint:
-    name = field(_of_kind(told, dict, "a joint"), "name", str, " of a joint")
+def _joint(given: Any) -> Joint:
+    name = field(_of_kind(given, dict, "a joint"), "name", str, " of a joint")
     of = f" of {quoted(name)}"
     limits = {
-        side: field(told, side, float, of)
+        side: field(given, side, float, of)
         for side in ("lower", "upper")
-        if told.get(side, 0.0) is not None
+        if given.get(side, 0.0) is not None
     }
-    parent = None if told.get("parent", "") is None else field(told, "parent", str, of)
+    parent = None if given.get("parent", "") is None else field(given, "parent", str, of)
     return Joint(
         name,
         parent,
-        offset=_vector(told.get("offset"), f"'offset'{of}"),
-        axis=_vector(told.get("axis"), f"'axis'{of}"),
-        slide=field(told, "slide", bool, of),
-        rest=field(told, "rest", float, of),
-        mobility=field(told, "mobility", float, of),
+        offset=_vector(given.get("offset"), f"'offset'{of}"),
+        axis=_vector(given.get("axis"), f"'axis'{of}"),
+        slide=field(given, "slide", bool, of),
+        rest=field(given, "rest", float, of),
+        mobility=field(given, "mobility", float, of),
         **limits,
     )
 
 
-def _figure(told: dict[str, Any]) -> tuple[Tree, Effectors]:
+def _figure(given: dict[str, Any]) -> tuple[Tree, Effectors]:
     of = " of the figure"
-    rows = [_joint(one) for one in field(told, "joints", list, of)]
-    points = field(told, "effectors", dict, of)
+    rows = [_joint(one) for one in field(given, "joints", list, of)]
+    points = field(given, "effectors", dict, of)
     names("joint", [row.name for row in rows])
     names("effector", list(points))
     tree = Tree.of(rows)

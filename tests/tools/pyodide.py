@@ -17,7 +17,7 @@ from typing import Any
 
 from ikteach.publish import site, wheels
 
-WANTED = [*site.START, "typing-extensions", "numpy", "pandas", "matplotlib"]
+WANTED = [*site.PRELOADED, "typing-extensions", "numpy", "pandas", "matplotlib"]
 
 
 def core(folder: Path) -> None:
@@ -49,7 +49,7 @@ def distribution(folder: Path) -> Path:
         one = whole["packages"][name]
         try:
             wheel = fetched(one, folder) if name == "micropip" else wheels.again(name, folder)
-            one.update(file_name=wheel.name, version=wheels.facts(wheel).version)
+            one.update(file_name=wheel.name, version=wheels.metadata(wheel).version)
         except LookupError:  # compiled, or pandas's pytz, which pandas no longer has here
             wheel = hollow(folder / one["file_name"], one)
         one["sha256"] = wheels.digest(wheel.read_bytes())

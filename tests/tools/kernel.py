@@ -1,4 +1,4 @@
-"""Say whether OpenBLAS takes the kernel that it is asked for: python tests/kernel.py Haswell
+"""Say whether OpenBLAS takes the kernel that it is asked for: python tests/tools/kernel.py Haswell
 
 A kernel is for a kind of processor, and rounds in its own way. One that this processor cannot run,
 that numpy's OpenBLAS does not have, or that it takes anyhow, is told by name and left out.

@@ -8,7 +8,7 @@ import numpy as np
 
 from ikteach import Effectors, Joint, Tree
 
-DATA = Path(__file__).parent / "data"
+DATA = Path(__file__).parents[1] / "data"
 REFERENCE = json.loads((DATA / "ik_reference.json").read_text())
 CASES = {case["id"]: case for case in REFERENCE["cases"]}
 EXPERIMENTS = REFERENCE["tracking"]["experiments"]

@@ -18,7 +18,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 COMPUTING = [
     *(f"tests/{room}" for room in ("bench", "body", "motion", "solvers", "study")),
@@ -118,7 +118,7 @@ def kernel(name: str, *more: str) -> Part:
         f"rounded by {name}",
         [pytest(*ROUNDED, *more)],
         {"OPENBLAS_CORETYPE": name, "IKTEACH_FULL": ""},
-        needs=[[sys.executable, "tests/kernel.py", name]],
+        needs=[[sys.executable, "tests/tools/kernel.py", name]],
     )
 
 

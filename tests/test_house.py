@@ -1,0 +1,74 @@
+"""The house's laws that can be counted: how large a thing may be, and one name for each."""
+
+import ast
+import re
+from collections import defaultdict
+from pathlib import Path
+
+import pytest
+
+import ikteach
+
+PACKAGE = Path(ikteach.__file__).parent
+MODULES = sorted(path.relative_to(PACKAGE) for path in PACKAGE.rglob("*.py"))
+TASKS = {"exercises", "solutions"}  # whose names and words are those of the notebooks
+OURS = [module for module in MODULES if TASKS.isdisjoint(module.parts)]
+
+LONGEST = {ast.ClassDef: 250, ast.FunctionDef: 50, ast.AsyncFunctionDef: 50}  # lines
+DOCUMENTED = ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef
+WORDS = 10  # of the first line of a docstring
+SKIPS = 10  # `# fmt: skip` in the package
+SHARED = {"main"}  # of each command
+
+
+def parsed(module):
+    return ast.parse((PACKAGE / module).read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("module", MODULES, ids=str)
+def test_no_class_and_no_function_is_too_long(module):
+    for node in ast.walk(parsed(module)):
+        if (most := LONGEST.get(type(node))) is not None:
+            lines = node.end_lineno - node.lineno + 1
+            assert lines <= most, f"{node.name} in {module} has {lines} lines"
+
+
+@pytest.mark.parametrize("module", OURS, ids=str)
+def test_a_docstring_begins_with_few_words(module):
+    for node in ast.walk(parsed(module)):
+        if not isinstance(node, DOCUMENTED) or node.name.startswith("_"):
+            continue
+        first = (ast.get_docstring(node) or "").partition("\n")[0]
+        prose = re.sub(r"\([^()]*\)|\[[^\[\]]*\]|`[^`]*`", "", first)  # without shapes, units, code
+        words = re.findall(r"[^\W\d_]{2,}", prose)
+        assert len(words) <= WORDS, f"{module}: {first}"
+
+
+def test_a_class_or_function_has_a_name_of_its_own():
+    known = defaultdict(list)
+    for module in OURS:
+        for node in parsed(module).body:
+            if isinstance(node, DOCUMENTED) and not node.name.startswith("_"):
+                known[node.name].append(str(module))
+    twice = {name: modules for name, modules in known.items() if len(modules) > 1}
+    assert {name: modules for name, modules in twice.items() if name not in SHARED} == {}
+
+
+def test_a_constant_is_defined_once():
+    """One value under one name in two modules is one constant, defined twice."""
+    known = defaultdict(list)
+    for module in OURS:
+        for node in parsed(module).body:
+            if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]).isupper():
+                known[ast.unparse(node)].append(str(module))
+    assert {one: modules for one, modules in known.items() if len(modules) > 1} == {}
+
+
+def test_the_formatter_is_followed():
+    counts = {
+        str(module): len(
+            re.findall(r"# fmt: (?:skip|off)\n", (PACKAGE / module).read_text("utf-8"))
+        )
+        for module in MODULES
+    }
+    assert sum(counts.values()) <= SKIPS, {name: count for name, count in counts.items() if count}
