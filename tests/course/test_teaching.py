@@ -197,7 +197,7 @@ def test_8_the_cap_makes_the_verdict() -> None:
 def test_9_the_feet_follow_later_and_the_hands_as_before() -> None:
     bench = Workbench()
     slow = standing(bench.session).loc["dls"]
-    bench._control("speed").value = 8.4
+    bench.panels["Speed"].controls["speed"].value = 8.4
     fast = standing(bench.session).loc["dls"]
     assert (slow["foot.l"], fast["foot.l"]) == pytest.approx((0.22, 0.33), abs=0.06)
     assert fast["hand.l"] == pytest.approx(slow["hand.l"], abs=1)
