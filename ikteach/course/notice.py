@@ -31,7 +31,7 @@ class Notice:
 
 
 def box(mood: Mood, content: Markup) -> Markup:
-    """The content beside a sign, with a coloured edge."""
+    """Put the content beside a sign, with a coloured edge."""
     sign, colour = LOOK[mood]
     return untouched(
         Markup(
@@ -42,7 +42,7 @@ def box(mood: Mood, content: Markup) -> Markup:
 
 
 def paragraph(text: str) -> Markup:
-    """The text as HTML; `code` in backquotes is set as such."""
+    """Write the text as HTML; `code` in backquotes is set as such."""
     parts, code = text.split("`"), Markup("<code>{}</code>")
     if len(parts) % 2 == 0:
         return escaped(text)

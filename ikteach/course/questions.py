@@ -30,7 +30,7 @@ def predict(
     ranking: bool = False,
     explain: str | None = None,
 ) -> "Question":
-    """A question to answer before the code runs; make it the last line of its cell.
+    """Ask before the code runs; make it the last line of its cell.
 
     key      chapter and name, such as "03.half-alpha"
     options  what there is to choose from, or to put in order if `ranking`
@@ -71,7 +71,7 @@ NO_ANSWER = "That is no answer to this question."
 
 
 def _choices(key: str, options: Sequence[str]) -> list[str]:
-    """The options as a list; TypeError or ValueError says what they are not."""
+    """Check the options, as a list; TypeError or ValueError says what is wrong."""
     from ikteach.view.widgets import doors
 
     choices = doors.words(f"the options of {key!r}", options)
@@ -84,7 +84,7 @@ def _choices(key: str, options: Sequence[str]) -> list[str]:
 
 
 def _range(key: str, numbers: Any) -> tuple[float, float, str]:
-    """Low, high and unit; TypeError or ValueError says what they are not."""
+    """Check low, high and unit; TypeError or ValueError says what is wrong."""
     from ikteach.view.widgets import doors
 
     if not (isinstance(numbers, tuple | list) and len(numbers) == 3):
@@ -187,7 +187,7 @@ def _lock(key: str) -> None:
 def quiz(
     key: str, question: str, options: Sequence[str], right: str, why: str | Mapping[str, str]
 ) -> "Question":
-    """An exit question; make it the last line of its cell.
+    """Ask an exit question; make it the last line of its cell.
 
     right  the right one of the options
     why    {option: a sentence} for the options, said when one is chosen; or one sentence for all
@@ -218,7 +218,7 @@ def quiz(
 
 
 def words(value: Any) -> str:
-    """An answer as a person writes it."""
+    """Write an answer as a person does."""
     if isinstance(value, list):
         return bounded(", then ".join(map(words, value)), 1000)
     return f"{value:.4g}" if isinstance(value, float) else bounded(str(value), 1000)

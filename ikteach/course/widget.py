@@ -1,4 +1,4 @@
-"""The widget of a question. It knows nothing of what is right; it tells what was answered."""
+"""The widget of a question: it asks, and hands over the answers."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -8,7 +8,7 @@ import traitlets
 
 from ikteach.markup import Markup, untouched
 from ikteach.view.widgets import doors
-from ikteach.view.widgets.actor import in_words
+from ikteach.view.widgets.actor import attempt
 from ikteach.view.widgets.closing import Living, occupant
 from ikteach.view.widgets.page import script, style
 
@@ -43,19 +43,22 @@ class Question(Living, anywidget.AnyWidget):
 
     def _sent(self, _: Any) -> None:
         if not self.locked:
-            try:
-                self.status = self._on_answer(self.answer)
-            except Exception as error:
-                self.status = in_words(error)
+            attempt(self._judge, self._say)
+
+    def _judge(self) -> None:
+        self._say(self._on_answer(self.answer))
+
+    def _say(self, words: str) -> None:
+        self.status = words
 
     @classmethod
     def living(cls, key: str) -> "Question | None":
-        """The question of this key that is on the page, if there is one."""
+        """Find the question of this key that is on the page, if there is one."""
         shown = occupant(f"question {key}")
         return shown if isinstance(shown, cls) else None
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
-        """The widget, and beside it the question to read in places without a kernel."""
+        """Show the widget, and beside it the question for a place without a kernel."""
         bundle = super()._repr_mimebundle_(**kwargs)
         data, metadata = bundle if isinstance(bundle, tuple) else (bundle, {})
         still = {"text/html": str(self._still()), "text/plain": self.question}

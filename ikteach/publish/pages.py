@@ -16,7 +16,7 @@ from pygments.formatters import HtmlFormatter
 from ikteach.markup import Markup
 
 WIDGET = "application/vnd.jupyter.widget-view+json"
-PAGE_STYLE = (Path(__file__).parent / "pages.css").read_text(encoding="utf-8")
+PAGE_STYLE = (Path(__file__).parent / "pages.css").read_text("utf-8")
 
 
 class MathML(IPythonRenderer):

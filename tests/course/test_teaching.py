@@ -185,17 +185,19 @@ def test_8_the_cap_makes_the_verdict() -> None:
     assert at_2 == pytest.approx(4, abs=0.5)
     assert at_own == pytest.approx(15, abs=2)
     put(race, degrees=2)
-    race.refresh()
+    race.session.tick()
+    race.report()
     assert standing(race.session).loc["dls", "foot.l"] == pytest.approx(4.4, abs=0.5)
     put(race, caps=OWN)
-    race.refresh()
+    race.session.tick()
+    race.report()
     assert standing(race.session)["jitter"]["pseudoinverse"] == pytest.approx(15, abs=2)
 
 
 def test_9_the_feet_follow_later_and_the_hands_as_before() -> None:
     bench = Workbench()
     slow = standing(bench.session).loc["dls"]
-    bench._control("speed").value = 8.4
+    bench.panels["Speed"].controls["speed"].value = 8.4
     fast = standing(bench.session).loc["dls"]
     assert (slow["foot.l"], fast["foot.l"]) == pytest.approx((0.22, 0.33), abs=0.06)
     assert fast["hand.l"] == pytest.approx(slow["hand.l"], abs=1)

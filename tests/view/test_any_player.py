@@ -17,9 +17,9 @@ from ikteach.motion.live.session import Session
 from ikteach.motion.path import Path
 from ikteach.view import Poser, Scene, StillScene
 from ikteach.view.chapters.comparison import EQUAL, OWN, Race
-from ikteach.view.chapters.figure import Dial
 from ikteach.view.chapters.gait import GaitPlayer
 from ikteach.view.chapters.jacobian import ColumnPoser
+from ikteach.view.live.joints import Dial
 from ikteach.view.stage.lengths import Lengths, digits_of, round_step
 from ikteach.view.tools.replay import Replay
 from ikteach.view.tools.session_panels import SLIDERS

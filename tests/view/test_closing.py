@@ -4,6 +4,7 @@ import ast
 import importlib
 import json
 import pkgutil
+import sys
 from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
@@ -25,7 +26,8 @@ from ikteach.view.chapters.dls import tradeoff_bench
 from ikteach.view.chapters.pseudoinverse import CapPlayer
 from ikteach.view.chapters.sdls import spectrum_bench
 from ikteach.view.chapters.transpose import slope_bench
-from ikteach.view.live.bench import Bench, Shown, slider
+from ikteach.view.live.bench import Bench, Shown
+from ikteach.view.live.panel import slider
 from ikteach.view.live.strips import Strips
 from ikteach.view.tools.files import Keeper
 from ikteach.view.tools.inspector import Glass
@@ -36,10 +38,11 @@ from ikteach.view.webgl.handles import Handles
 from ikteach.view.webgl.targets import Targets
 from ikteach.view.widgets.ball import Ball
 from ikteach.view.widgets.closing import Living, living, occupant
+from ikteach.view.widgets.curve import Curve
 from ikteach.view.widgets.picture import Picture
-from ikteach.view.widgets.pointing import Curve, Rows
 from ikteach.view.widgets.prose import Prose
 from ikteach.view.widgets.status import Status
+from ikteach.view.widgets.table import Rows
 
 NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
 
@@ -156,7 +159,9 @@ def all_that_live() -> set[str]:
         one = waiting.pop()
         below = [each for each in one.__subclasses__() if each.__module__.startswith("ikteach.")]
         waiting += below
-        if one.__module__.startswith("ikteach.") and not below:
+        # A module whose first import failed halfway leaves classes that nobody can find.
+        there = getattr(sys.modules.get(one.__module__), one.__qualname__, None) is one
+        if one.__module__.startswith("ikteach.") and there and not below:
             found.add(full(one))
     return found
 

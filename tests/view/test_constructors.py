@@ -2,11 +2,13 @@
 
 import re
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import ipywidgets as widgets
 import numpy as np
+import pandas as pd
 import pytest
 
 from ikteach import figures
@@ -14,8 +16,11 @@ from ikteach.course import predict, quiz
 from ikteach.motion.live.session import Session
 from ikteach.motion.reach.planar import PlanarReach
 from ikteach.view import BendBench, ColumnPoser, Poser, Scene, Simulator, StillScene, Workbench
+from ikteach.view.chapters.comparison import Race
 from ikteach.view.chapters.pseudoinverse import CapPlayer
-from ikteach.view.live.bench import Bench, Shown, slider
+from ikteach.view.charts import bars, heat, lines, phase_plot
+from ikteach.view.live.bench import Bench, Shown
+from ikteach.view.live.panel import slider
 from ikteach.view.tools.files import Keeper
 from ikteach.view.tools.inspector import Glass
 from ikteach.view.tools.recorder import Recorder
@@ -107,6 +112,35 @@ REFUSED: list[tuple[Callable[[], Any], type[Exception], str]] = [
     ),
     (lambda: CapPlayer("x"), ValueError, "degrees must be a number, from 0.5 to 45, not 'x'"),
     (lambda: CapPlayer(NAN), ValueError, "degrees must be a number, from 0.5 to 45, not nan"),
+    *(
+        (
+            lambda degrees=degrees: Race(degrees=degrees),
+            ValueError,
+            f"from 0.5 to 180, not {degrees}",
+        )
+        for degrees in (-3, 1000, NAN, None)
+    ),
+    (lambda: Race(degrees="x"), ValueError, "degrees must be a number, from 0.5 to 180, not 'x'"),
+    (lambda: slider("x", NAN, 0, 1, 1), ValueError, "the value of 'x' must be a finite number"),
+    (lambda: slider("x", None, 0, 1, 0.1), ValueError, "'x' must be a finite number, not None"),
+    *(
+        (lambda draw=draw, table=table: draw(table), error, said)
+        for draw in (
+            partial(heat, title="", unit=""),
+            partial(bars, title="", ylabel=""),
+            partial(lines, title="", xlabel="", ylabel=""),
+            phase_plot,
+        )
+        for table, error, said in (
+            (None, TypeError, "a chart needs a pandas DataFrame, not None"),
+            ("abc", TypeError, "a chart needs a pandas DataFrame, not 'abc'"),
+            (np.eye(2), TypeError, "a chart needs a pandas DataFrame, not array"),
+            (pd.DataFrame(), ValueError, "a chart needs rows and columns, not 0 by 0"),
+            (pd.DataFrame({"a": []}), ValueError, "a chart needs rows and columns, not 0 by 1"),
+            (pd.DataFrame({"a": ["x"]}), ValueError, "column 'a' of a chart's table must be made"),
+            (pd.DataFrame({"a": [NAN]}), ValueError, "all of this table are missing"),
+        )
+    ),
     (lambda: CapPlayer(x_hand=99), ValueError, "x_hand must be a number, from 0.3 to 2, not 99"),
     (lambda: CapPlayer(xhand=1), TypeError, "no option of CapPlayer 'xhand'; did you mean 'x_hand"),
     (lambda: Targets(3, [[0, 0, 0]]), TypeError, "scene must be a Scene or a StillScene, not 3"),

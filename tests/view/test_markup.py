@@ -26,9 +26,7 @@ from ikteach.markup import LONGEST, Markup, as_label, escaped, plain
 from ikteach.motion.live.session import Session
 from ikteach.solvers import dls
 from ikteach.view import ColumnPoser, GaitPlayer, Poser, Scene, StillScene
-from ikteach.view.charts import bars, lines
-from ikteach.view.heat import heat
-from ikteach.view.plots import phase_plot
+from ikteach.view.charts import bars, heat, lines, phase_plot
 from ikteach.view.tools.inspector import Glass
 from ikteach.view.tools.inspector_pages import PAGES
 from ikteach.view.tools.recorder import Recorder

@@ -13,15 +13,17 @@ from ikteach.motion.live.session import Session
 from ikteach.motion.live.settings import SESSION, check_options
 from ikteach.motion.methods import Methods
 from ikteach.view.chapters.gait import table
-from ikteach.view.live.bench import choice, slider
 from ikteach.view.live.live import Live
+from ikteach.view.live.panel import Does, Panel, button, choice, slider
 from ikteach.view.live.strips import SECONDS, Strips
 from ikteach.view.stage.lengths import Lengths
 from ikteach.view.tools.session_panels import motions, other_motion
 from ikteach.view.webgl.scene import Scene
+from ikteach.view.widgets import doors
 from ikteach.view.widgets.prose import Prose
 
 EQUAL, OWN = "equal caps", "each author's caps"
+CAP = (0.5, 180.0)  # from, to [degrees per step]
 
 
 class Race(Live):
@@ -29,66 +31,61 @@ class Race(Live):
 
     methods  {name: solver}, or solvers and their names in a list, or one of them alone; the four
              of the course if none are given
-    degrees  the step cap of all [° a step]
+    degrees  the step cap of all [degrees per step]
     options  go to `Session`: the figure (a human if none is given), its gait or path, and so on
 
     Display it in a notebook. `session` holds all state; `values` is what the controls say.
     """
 
     def __init__(
-        self, methods: Methods | None = None, *, degrees: float = 30.0, slot: str | None = "race",
+        self,
+        methods: Methods | None = None,
+        *,
+        degrees: float = 30.0,
+        slot: str | None = "race",
         **options: Any,
-    ) -> None:  # fmt: skip
+    ) -> None:
+        degrees = doors.within("degrees", degrees, *CAP)
         check_options(options, [*SESSION, "degrees", "slot"])
         session = Session(methods=methods, **options)
-        size = stature(session.tree, session.effectors)
-        count = len(session.methods)
-        scene = Scene(
-            session.tree,
-            session.effectors,
-            names=[*session.methods],
-            apart=None if size is None else 1.9 * size[0],  # so that running hands do not meet
-            width=540 if count == 1 else min(960, 240 * count + 120),
-            height=400,
-            slot=None,
-        )
-        self._first = session.gait
-        super().__init__(session, scene, slot, Strips(session))
+        super().__init__(session, _scene(session), slot, Strips(session))
         self._table = Prose()
-        step, reset = (widgets.Button(description=words) for words in ("Step", "Reset"))
-        speed = session.gait.speed
-        self.controls = {
-            "caps": choice("caps", [EQUAL, OWN]),
-            "motion": choice("motion", motions(session), session.gait.name),
-            "degrees": slider(
-                "equal cap [° a step]", degrees, min(1.0, degrees), max(45.0, degrees), 0.5
-            ),
-            "speed": slider("speed ω [rad/s]", speed, min(0.0, speed), max(20.0, speed), 0.1),
-        }
+        self._first = session.gait
+        self.panel = self._panel(degrees)
+        self.controls = self.panel.controls
+        step, reset = button("Step"), button("Reset")
         step.on_click(self.guarded(lambda _: self.step()))
         reset.on_click(self.guarded(lambda _: session.reset()))
-        for name, control in self.controls.items():
-            control.observe(self.guarded(lambda _, name=name: self._obey(name)), "value")
         self.children = [
-            widgets.HBox([self.play_button(), step, reset]),
-            # side by side where there is room, so that figures and curves are seen with them
-            widgets.HBox([*self.controls.values()], layout=widgets.Layout(flex_flow="row wrap")),
+            widgets.HBox([self.play_button, step, reset]),
+            self.panel.widget,
             self.status,
             self.scene.widget,
             self.strips,
             self._table,
         ]
-        self._obey("caps")
+        self._bound()
         self.report()
+
+    def _panel(self, degrees: float) -> Panel:
+        session = self.session
+        speed = slider("speed ω [rad/s]", session.gait.speed, 0.0, 20.0, 0.1)
+        row = {  # side by side where there is room, so that figures and curves are seen with them
+            "caps": Does(choice("caps", [EQUAL, OWN]), self._bound),
+            "motion": Does(choice("motion", motions(session), session.gait.name), self._move),
+            "degrees": Does(slider("equal cap [° per step]", degrees, 1.0, 45.0, 0.5), self._bound),
+            "speed": Does(speed, lambda speed: session.change(speed=speed)),
+        }
+        return Panel("Race", [row], guard=self.guarded)
 
     @property
     def values(self) -> dict[str, Any]:
-        """What the controls say now."""
-        return {name: control.value for name, control in self.controls.items()}
+        """The values of the controls, by name."""
+        return self.panel.values
 
     @property
     def words(self) -> str:
-        """Who is how far from the targets, on average of the last seconds."""
+        """Say who is how far from the targets, on average of the last seconds."""
         session = self.session
         tracks = session.tracks(last=round(SECONDS / session.dt))
         length = Lengths.of(session.tree, session.effectors)
@@ -96,11 +93,6 @@ class Race(Live):
         who = self.scene.stage.crowd
         caps = self.values["caps"]
         return f"{who}, {session.gait.name}, {caps}. Mean distance: {far or 'no tick yet'}."
-
-    def refresh(self) -> None:
-        """Take one tick, and report."""
-        self.session.tick()
-        self.report()
 
     def draw(self) -> None:
         """Have the scene show what the session says."""
@@ -119,16 +111,26 @@ class Race(Live):
         whose = Markup("<p>On the left above: the effectors of {}.</p>").format(self.session.method)
         self._table.value = whose + table(self.session)
 
-    def _obey(self, name: str) -> None:
+    def _move(self, motion: str) -> None:
+        self.session.gait = other_motion(self.session, motion, self._first)
+        self.panel.put(speed=self.session.gait.speed)
+
+    def _bound(self, _: Any = None) -> None:
         session, values = self.session, self.values
-        if name == "motion":
-            session.gait = other_motion(session, values["motion"], self._first)
-            speed = self.controls["speed"]
-            speed.max = max(speed.max, session.gait.speed)
-            speed.value = session.gait.speed
-        elif name == "speed":
-            session.change(speed=values["speed"])
-        else:
-            equal = dict.fromkeys(session.methods, radians(values["degrees"]))
-            own = {name: BUSS_CAPS.get(name) for name in session.methods}
-            session.bound(own if values["caps"] == OWN else equal)
+        equal = dict.fromkeys(session.methods, radians(values["degrees"]))
+        own = {name: BUSS_CAPS.get(name) for name in session.methods}
+        session.bound(own if values["caps"] == OWN else equal)
+
+
+def _scene(session: Session) -> Scene:
+    """Make a scene with a figure per method, side by side."""
+    size, count = stature(session.tree, session.effectors), len(session.methods)
+    return Scene(
+        session.tree,
+        session.effectors,
+        names=[*session.methods],
+        apart=None if size is None else 1.9 * size[0],  # so that running hands do not meet
+        width=540 if count == 1 else min(960, 240 * count + 120),
+        height=400,
+        slot=None,
+    )

@@ -11,7 +11,7 @@ from ikteach.motion.live.settings import SESSION, check_options
 from ikteach.motion.methods import Methods
 from ikteach.study import distances
 from ikteach.view.live.live import Live
-from ikteach.view.live.panel import Does, Panel, button, choice, dropdown, play_button, tick_box
+from ikteach.view.live.panel import Does, Panel, button, choice, dropdown, tick_box
 from ikteach.view.live.strips import SECONDS, Strips
 from ikteach.view.stage.lengths import Lengths
 from ikteach.view.stage.stage import sides_of
@@ -76,7 +76,7 @@ class GaitPlayer(Live):
             "Gait",
             [
                 {
-                    "playing": Does(play_button(), lambda on: self.play() if on else self.pause()),
+                    "playing": self.play_button,
                     "step": Does(button("Step"), self.step),
                     "reset": Does(button("Reset"), session.reset),
                 },
@@ -100,13 +100,9 @@ class GaitPlayer(Live):
     def _wound(self, on: bool) -> None:
         self.session.change(wound=WOUND if on else {})
 
-    def say_playing(self, on: bool) -> None:
-        """Have the button say whether it plays."""
-        self.panel.put(playing=on)
-
     @property
     def words(self) -> str:
-        """What the picture shows, for those who cannot see it."""
+        """Say what the picture shows, for those who cannot see it."""
         return words(self.session)
 
     def draw(self) -> None:
@@ -129,7 +125,7 @@ class GaitPlayer(Live):
 
 
 def words(session: Session) -> str:
-    """The shown figure in words: what it does, by which method, and how well."""
+    """Say what the shown figure does, by which method, and how well."""
     length = Lengths.of(session.tree, session.effectors)
     far = ", ".join(
         f"{name} {length(d)}"
@@ -142,7 +138,7 @@ def words(session: Session) -> str:
 
 
 def table(session: Session, shown: str | None = None) -> Markup:
-    """The last seconds of each method as a table; the one that is `shown` says so."""
+    """Write the last seconds of each method as a table; the `shown` one says so."""
     tracks = session.tracks(last=round(SECONDS / session.dt))
     if not tracks:
         return Markup("<p>No tick yet: the table fills when the figure moves.</p>")

@@ -1,6 +1,5 @@
 """The human motion simulator of chapter 10: a cursor to move, and a figure that reaches for it."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from math import degrees, inf, radians
 from typing import Any
@@ -15,8 +14,8 @@ from ikteach.checks import count
 from ikteach.markup import Markup
 from ikteach.motion.reach.reaching import Reach, Reaching
 from ikteach.study import standings
-from ikteach.view.live.bench import choice, slider
 from ikteach.view.live.live import Live
+from ikteach.view.live.panel import Does, Panel, button, choice, dropdown, slider
 from ikteach.view.stage.colours import RED
 from ikteach.view.stage.forms import Label
 from ikteach.view.stage.stage import CAMERAS
@@ -26,7 +25,6 @@ from ikteach.view.webgl.targets import Targets
 from ikteach.view.widgets import doors
 from ikteach.view.widgets.prose import Prose, table
 
-TABLE_EVERY = 10  # ticks
 WHITE = "#ffffff"
 
 
@@ -57,7 +55,7 @@ class CursorScene(Scene):
 
 
 def _cursor(session: Reaching) -> Effectors:
-    """The hand that reaches, under the name that its target is to have."""
+    """Give the hand that reaches the name of its target."""
     return replace(session.effectors, names=("cursor",))
 
 
@@ -85,28 +83,15 @@ class Simulator(Live):
             doors.within("max_step", session.max_step, 0, inf)
         super().__init__(session, CursorScene(session), slot)
         self._known = session.cursor  # the one that the handles and sliders know of
-        self.targets = Targets(
-            self.scene,
-            session.cursor[None],
-            low=session.room[:1],
-            high=session.room[1:],
-            slot=None,
-        )
+        low, high = session.room[:1], session.room[1:]
+        self.targets = Targets(self.scene, session.cursor[None], low=low, high=high, slot=None)
         self.targets.on_change(self.guarded(lambda _, place: self._put(place)))
         self._cursor, self._table = Prose(), Prose()
-        self.controls = self._make_controls()
-        panel = widgets.VBox(
-            [
-                self._cursor,
-                widgets.HBox([self.controls[name] for name in ("playing", "step", "reset")]),
-                self.controls["method"],
-                *(self.controls[name] for name in ("parts", "max_step", "view")),
-            ],
-            layout=widgets.Layout(flex="1 1 400px", min_width="360px"),
-        )
+        self.panel = self._panel()
+        self.controls = self.panel.controls
         self.scene.widget.layout = widgets.Layout(flex="0 0 auto", width="552px")
         beside = widgets.HBox(
-            [self.scene.widget, panel], layout=widgets.Layout(flex_flow="row wrap")
+            [self.scene.widget, self.panel.widget], layout=widgets.Layout(flex_flow="row wrap")
         )
         self.children = [beside, self.targets, self.status, self._table]
         self.report()
@@ -118,7 +103,7 @@ class Simulator(Live):
 
     @property
     def words(self) -> str:
-        """What is to be seen, for those who cannot see it."""
+        """Say what the picture shows, for those who cannot see it."""
         session = self.session
         x, y, z = session.cursor
         return (
@@ -131,34 +116,32 @@ class Simulator(Live):
     def _colour(self) -> str:
         return "white" if self.session.within else "red"
 
-    def _make_controls(self) -> dict[str, Any]:
-        session = self.session
+    def _panel(self) -> Panel:
+        session, narrow = self.session, {"width": "400px", "label_width": "150px"}
         cap = degrees(session.max_step) if session.max_step is not None else 45.0
-        made = {
-            "playing": self.play_button(),
-            "step": widgets.Button(description="Step"),
-            "reset": widgets.Button(description="Reset"),
-            "method": choice("Method", list(session.ways), session.method),
-            "parts": _narrow("n, parts of the error", session.parts, 1, 30, 1),
-            "max_step": _narrow("largest step [° a tick]", cap, 1.0, 45.0, 1.0),
-            "view": widgets.Dropdown(options=self._sides(), description="View"),
+        methods = choice("Method", list(session.ways), session.method, label_width="60px")
+        parts = slider("n, parts of the error", session.parts, 1, 30, 1, **narrow)
+        caps = slider("largest step [° per tick]", cap, 1.0, 45.0, 1.0, **narrow)
+        sides = ["plane"] if self.scene.stage.planar else list(CAMERAS)
+        clock = {
+            "playing": self.play_button,
+            "step": Does(button("Step"), self.step),
+            "reset": Does(button("Reset"), session.reset),
         }
-        made["method"].style.description_width = "60px"
-        acts: dict[str, Callable[[Any], None]] = {
-            "method": session.show,
-            "parts": lambda n: setattr(session, "parts", n),
-            "max_step": lambda d: setattr(session, "max_step", radians(d)),
-            "view": self.scene.look_from,
-        }
-        for name, act in acts.items():
-            obey = self.guarded(lambda change, act=act: act(change["new"]))
-            made[name].observe(obey, "value")
-        made["step"].on_click(self.guarded(lambda _: self.step()))
-        made["reset"].on_click(self.guarded(lambda _: session.reset()))
-        return made
-
-    def _sides(self) -> list[str]:
-        return ["plane"] if self.scene.stage.planar else list(CAMERAS)
+        return Panel(
+            "Simulator",
+            [
+                self._cursor,
+                clock,
+                {"method": Does(methods, session.show)},
+                {"parts": Does(parts, lambda n: setattr(session, "parts", n))},
+                {"max_step": Does(caps, lambda d: setattr(session, "max_step", radians(d)))},
+                {"view": Does(dropdown("View", sides), self.scene.look_from)},
+            ],
+            guard=self.guarded,
+            flex="1 1 400px",
+            min_width="360px",
+        )
 
     def _put(self, place: Array) -> None:
         if not np.allclose(place, self.session.cursor, atol=1e-9):
@@ -184,13 +167,6 @@ class Simulator(Live):
             'padding:1px 8px;border:1px solid #444;border-radius:8px">{}</b> {}</div>'
         ).format(colour, mark, session.words)
         self._table.value = _table(session)
-
-
-def _narrow(label: str, value: float, low: float, high: float, step: float) -> Any:
-    """A slider that fits beside the scene."""
-    made = slider(label, value, low, high, step)
-    made.layout.width, made.style.description_width = "400px", "150px"
-    return made
 
 
 def _table(session: Reaching) -> Markup:

@@ -1,39 +1,65 @@
 """Chapter 2's live figure: an arm that is bent, and what it can then do about an error."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.figure import Figure
 
+from ikteach.arrays import Array
 from ikteach.body import forward, jacobian, locate
 from ikteach.body.figures import planar_arm
 from ikteach.solvers import SOLVERS, conditioning, ellipsoid, manipulability
-from ikteach.view.chapters.figure import SceneBench
-from ikteach.view.live.bench import Canvas, Shown, slider
-from ikteach.view.stage.colours import EFFECTOR_COLOURS, PURPLE, SKY
+from ikteach.view.live.bench import Bench, Shown
+from ikteach.view.live.canvas import Canvas
+from ikteach.view.live.panel import slider
+from ikteach.view.stage.colours import PURPLE, SKY, effector_colour
 from ikteach.view.webgl.scene import Scene
 
 LEAST = 1e-5  # [rad] shorter bars are not seen
 SIZE = 0.1  # ‖e‖ [m]
 
 
-class BendBench(SceneBench):
+class BendBench(Bench):
     """A two-link arm with its ellipsoid; sliders bend it and turn an error of 10 cm round it.
 
     Under it: its singular values, and the length of the step that each method would take.
     """
 
     def __init__(self, *, slot: str | None = "bend") -> None:
-        self.arm = planar_arm(2)
-        self._chart()
+        tree, effectors = arm = planar_arm(2)
+        chart, scene = SingularityPlot(), Scene(*arm, width=460, height=400, slot=None)
         controls = {
             "bend": slider("bend of the elbow [°]", 40, -180, 180, 1),
             "way": slider("direction of the error [°]", 180, -180, 180, 5),
         }
-        scene = Scene(*self.arm, width=460, height=400, slot=None)
-        super().__init__(scene, self._bend, controls, slot=slot)
+
+        def show(*, bend: int, way: int) -> Shown:
+            theta = np.radians([0, bend])
+            frames = forward(tree, theta)
+            J, s = jacobian(tree, frames, effectors), locate(frames, effectors)
+            e = SIZE * np.array([np.cos(np.radians(way)), np.sin(np.radians(way)), 0])
+            sigma = np.linalg.svdvals(J)
+            steps = {name: solver(J, e) for name, solver in SOLVERS.items()}
+            lengths = {name: float(np.linalg.norm(step)) for name, step in steps.items()}
+            scene.show(theta, s + e, columns=J, ellipsoid=ellipsoid(J))
+            listed = ", ".join(f"{name} {length:.3g} rad" for name, length in lengths.items())
+            words = (
+                f"An arm bent by {bend}°, its error of {SIZE:g} m in the direction {way}°. "
+                f"σ₁ = {sigma[0]:.3f}, σ₂ = {sigma[1]:.3g} m/rad, √det(JJᵀ) = "
+                f"{manipulability(J[:2]):.3g}, condition {conditioning(J):.3g}. "
+                f"Jᵀe has the length {np.linalg.norm(J.T @ e):.3g}. Steps: {listed}."
+            )
+            return Shown(chart.png(sigma, [*lengths.values()]), words, words)
+
+        super().__init__(show, controls, slot=slot, scene=scene)
         scene.switch("ellipsoid")
         scene.switch("columns of J")
 
-    def _chart(self) -> None:
+
+class SingularityPlot:
+    """Bars of the singular values, and of the step that each method takes."""
+
+    def __init__(self) -> None:
         figure = Figure(figsize=(9.6, 2.3), dpi=90)
         left, right = figure.subplots(1, 2)
         figure.subplots_adjust(left=0.06, right=0.985, bottom=0.22, top=0.87, wspace=0.3)
@@ -43,9 +69,8 @@ class BendBench(SceneBench):
         right.set(title="length of the step ‖Δθ‖ [rad]", xscale="log", xlim=(LEAST, 1e3))
         right.axvline(np.pi, color="0.4", ls=":")
         at = range(len(SOLVERS))
-        self._steps = right.barh(
-            at, [1.0] * len(SOLVERS), color=EFFECTOR_COLOURS[: len(SOLVERS)], edgecolor="white"
-        )  # fmt: skip
+        colours = list(map(effector_colour, at))
+        self._steps = right.barh(at, [1.0] * len(SOLVERS), color=colours, edgecolor="white")
         right.set_yticks(at, list(SOLVERS))
         right.invert_yaxis()
         for axes in left, right:
@@ -53,25 +78,10 @@ class BendBench(SceneBench):
             axes.set_axisbelow(True)
         self._canvas = Canvas(figure, [*self._sigma, *self._steps])
 
-    def _bend(self, *, bend: int, way: int) -> Shown:
-        tree, effectors = self.arm
-        theta = np.radians([0, bend])
-        frames = forward(tree, theta)
-        J, s = jacobian(tree, frames, effectors), locate(frames, effectors)
-        e = SIZE * np.array([np.cos(np.radians(way)), np.sin(np.radians(way)), 0])
-        self.scene.show(theta, s + e, columns=J, ellipsoid=ellipsoid(J))
-        sigma = np.linalg.svdvals(J)
-        steps = {name: solver(J, e) for name, solver in SOLVERS.items()}
+    def png(self, sigma: Array, lengths: Sequence[float]) -> bytes:
+        """Draw singular values (2,) [m/rad] and lengths of steps [rad]."""
         for bar, value in zip(self._sigma, sigma, strict=True):
             bar.set_width(float(value))
-        lengths = {name: float(np.linalg.norm(step)) for name, step in steps.items()}
-        for bar, length in zip(self._steps, lengths.values(), strict=True):
+        for bar, length in zip(self._steps, lengths, strict=True):
             bar.set_width(max(length, LEAST))
-        told = ", ".join(f"{name} {length:.3g} rad" for name, length in lengths.items())
-        words = (
-            f"An arm bent by {bend}°, its error of {SIZE:g} m in the direction {way}°. "
-            f"σ₁ = {sigma[0]:.3f}, σ₂ = {sigma[1]:.3g} m/rad, √det(JJᵀ) = "
-            f"{manipulability(J[:2]):.3g}, condition {conditioning(J):.3g}. "
-            f"Jᵀe has the length {np.linalg.norm(J.T @ e):.3g}. Steps: {told}."
-        )
-        return Shown(self._canvas.png(), words, words)
+        return self._canvas.png()

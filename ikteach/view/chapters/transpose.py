@@ -3,15 +3,18 @@
 from functools import partial
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ikteach.arrays import Array
-from ikteach.body import forward, locate
 from ikteach.body.figures import planar_arm
 from ikteach.motion import ignore, step
 from ikteach.solvers import transpose
 from ikteach.study.experiment import downhill
-from ikteach.view.live.bench import Bench, Canvas, Shown, slider
+from ikteach.view.charts import outline
+from ikteach.view.live.bench import Bench, Shown
+from ikteach.view.live.canvas import Canvas
+from ikteach.view.live.panel import slider
 from ikteach.view.stage.colours import BLUE, GREEN, ORANGE, RED
 from ikteach.view.widgets.closing import making
 
@@ -20,7 +23,7 @@ GAINS = np.linspace(0, 3, 121)
 TINY = 1e-30  # [m²] keeps 0 / 0 away where the hand is on the target
 
 
-class Slope:
+class TransposePlot:
     """The arm in its pose, and the curve that the next step goes down."""
 
     def __init__(self) -> None:
@@ -31,35 +34,41 @@ class Slope:
         figure = Figure(figsize=(9.6, 3.9), dpi=90)
         left, right = figure.subplots(1, 2)
         figure.subplots_adjust(left=0.07, right=0.99, bottom=0.13, top=0.91, wspace=0.2)
-        left.set(xlim=(-3.3, 3.3), ylim=(-2.1, 3.3), aspect="equal", xlabel="x [m]", ylabel="y [m]")
-        left.set_title("the arm, before and after one step")
-        left.grid(alpha=0.3)
-        (self._before,) = left.plot([], [], "o--", color="0.55", lw=2, label="before")
-        (self._after,) = left.plot([], [], "o-", color=BLUE, lw=4, label="after")
-        (self._target,) = left.plot([], [], "X", color=RED, ms=12, label="target")
-        left.legend(loc="lower left", fontsize=8)
-        right.set(xlim=(0, 3), ylim=(0, 2.5), xlabel="gain: α as a share of the best α")
-        right.set_ylabel("squared error after the step, share of now")
-        right.set_title("the error parabola")
-        right.grid(alpha=0.3)
-        right.axhline(1, color="0.3", lw=1)
-        (self._promised,) = right.plot([], [], color=ORANGE, lw=2, label="promised: ‖e − αJJᵀe‖²")
-        (self._actual,) = right.plot([], [], "--", color=BLUE, lw=2, label="actual")
-        (self._best,) = right.plot([], [], "o", color=GREEN, ms=9, label="best α")
-        (self._half,) = right.plot([], [], "s", color="0.4", ms=8, label="half of it (thesis)")
-        (self._chosen,) = right.plot([], [], "D", color=RED, ms=9, label="chosen")
-        right.legend(loc="upper center", fontsize=8)
+        self._draw_arm(left)
+        self._draw_parabola(right)
         self._canvas = Canvas(figure, [*left.lines, *right.lines[1:]])
 
+    def _draw_arm(self, axes: Axes) -> None:
+        axes.set(xlim=(-3.3, 3.3), ylim=(-2.1, 3.3), aspect="equal", xlabel="x [m]", ylabel="y [m]")
+        axes.set_title("the arm, before and after one step")
+        axes.grid(alpha=0.3)
+        (self._before,) = axes.plot([], [], "o--", color="0.55", lw=2, label="before")
+        (self._after,) = axes.plot([], [], "o-", color=BLUE, lw=4, label="after")
+        (self._target,) = axes.plot([], [], "X", color=RED, ms=12, label="target")
+        axes.legend(loc="lower left", fontsize=8)
+
+    def _draw_parabola(self, axes: Axes) -> None:
+        axes.set(xlim=(0, 3), ylim=(0, 2.5), xlabel="gain: α as a share of the best α")
+        axes.set_ylabel("squared error after the step, share of now")
+        axes.set_title("the error parabola")
+        axes.grid(alpha=0.3)
+        axes.axhline(1, color="0.3", lw=1)
+        (self._promised,) = axes.plot([], [], color=ORANGE, lw=2, label="promised: ‖e − αJJᵀe‖²")
+        (self._actual,) = axes.plot([], [], "--", color=BLUE, lw=2, label="actual")
+        (self._best,) = axes.plot([], [], "o", color=GREEN, ms=9, label="best α")
+        (self._half,) = axes.plot([], [], "s", color="0.4", ms=8, label="half of it (thesis)")
+        (self._chosen,) = axes.plot([], [], "D", color=RED, ms=9, label="chosen")
+        axes.legend(loc="upper center", fontsize=8)
+
     def show(self, gain: float, x: float, y: float) -> Shown:
-        """The step with this gain towards a target at (x, y) [m]."""
+        """Draw the step with this gain towards a target at (x, y) [m]."""
         self._asked = gain, np.array([[x, y, 0.0]])
         targets = self._asked[1]
         curve = downhill(*self.arm, self.theta, targets, GAINS)
         marks = downhill(*self.arm, self.theta, targets, [0.0, 0.5, 1.0, gain])
         after = self._stepped()
         for line, pose in ((self._before, self.theta), (self._after, after)):
-            line.set_data(*self._outline(pose))
+            line.set_data(*outline(*self.arm, pose))
         self._target.set_data([x], [y])
         unit = max(float(marks.actual[0]), TINY)
         self._promised.set_data(GAINS, curve.promised / unit)
@@ -80,7 +89,7 @@ class Slope:
         self.theta, self.steps = self._stepped(), self.steps + 1
 
     def reset(self) -> None:
-        """Back to the bent arm."""
+        """Go back to the bent arm."""
         self.theta, self.steps = START, 0
 
     def _stepped(self) -> Array:
@@ -89,21 +98,18 @@ class Slope:
         solver = partial(transpose, gain=gain)
         return step(tree, self.theta, effectors, targets, solver, limits=ignore).theta
 
-    def _outline(self, theta: Array) -> Array:
-        """x and y of joints and hand, (2, 4) [m]."""
-        frames = forward(self.arm.tree, theta)
-        points = np.concatenate([frames.positions, locate(frames, self.arm.effectors)])
-        return points[:, :2].T
-
 
 @making()
 def slope_bench() -> Bench:
-    """The bench of chapter 3. Sliders: the gain, and where the target is."""
-    slope = Slope()
+    """Make the bench of chapter 3.
+
+    Its sliders are the gain and the target's place, its buttons take the step and start again.
+    """
+    plot = TransposePlot()
     controls = {
         "gain": slider("gain (share of best α)", 0.5, 0.0, 3.0, 0.05),
         "x": slider("target x [m]", 0.5, -2.5, 2.5, 0.05),
         "y": slider("target y [m]", 2.2, -1.5, 2.5, 0.05),
     }
-    buttons = {"Take the step": slope.take, "Start again": slope.reset}
-    return Bench(slope.show, controls, slot="slope", buttons=buttons)
+    buttons = {"Take the step": plot.take, "Start again": plot.reset}
+    return Bench(plot.show, controls, slot="slope", buttons=buttons)

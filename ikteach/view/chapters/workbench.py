@@ -13,7 +13,7 @@ from ikteach.motion.mix import Mix
 from ikteach.solvers import SOLVERS, Solver
 from ikteach.view.chapters.gait import table, words
 from ikteach.view.live.live import Live
-from ikteach.view.live.panel import Act, Does, Panel, button, play_button
+from ikteach.view.live.panel import Act, Does, Panel, button
 from ikteach.view.live.strips import Strips
 from ikteach.view.tools.files import Keeper
 from ikteach.view.tools.inspector import Glass
@@ -99,7 +99,7 @@ class Workbench(Live):
 
     def _make_bar(self) -> Panel:
         row = {
-            "playing": Does(play_button(), lambda on: self.play() if on else self.pause()),
+            "playing": self.play_button,
             "step": Does(button("Step"), self.step),
             "undo": Does(button("Undo"), self.undo),
             "reset": Does(button("Reset"), self._reset),
@@ -151,10 +151,6 @@ class Workbench(Live):
         if self.playing:
             self.session.note("pause")
         super().pause()
-
-    def say_playing(self, on: bool) -> None:
-        """Have the button say whether it plays."""
-        self.bar.put(playing=on)
 
     def quit(self) -> None:
         """Stop every loop, and say so. To run the cell again begins anew."""
@@ -215,8 +211,7 @@ class Workbench(Live):
         self.figures = figures
         self._back_to_now()
         old, old_targets = self.scene, self.targets
-        self.scene = scene_of(self.session, figures)
-        self.scene.driver.on_page = self._seen
+        self.watch(scene_of(self.session, figures))
         self.targets = self._targets()
         box = self.panels["Target position"].widget
         box.children = [self.targets, *box.children[1:]]

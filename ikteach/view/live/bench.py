@@ -1,62 +1,37 @@
-"""A bench: sliders and buttons over a picture that answers them, for chapters 3, 5 and 6."""
+"""A picture that answers its controls."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import ipywidgets as widgets
-import numpy as np
-from matplotlib.artist import Artist
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 
 from ikteach.checks import function
-from ikteach.view.plots import as_png
+from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import doors
-from ikteach.view.widgets.actor import Actor, in_words
-from ikteach.view.widgets.closing import Living
+from ikteach.view.widgets.cell import Cell
 from ikteach.view.widgets.lacking import Note
 from ikteach.view.widgets.picture import Picture, Still
 from ikteach.view.widgets.prose import Prose
-from ikteach.view.widgets.status import Status
-
-WIDE = {"description_width": "190px"}
 
 
 class Shown(NamedTuple):
-    """What a bench shows: a picture, the same in words, and what stands under it."""
+    """A picture (PNG), the same in words, and what stands under it."""
 
     png: bytes
     words: str
     below: str = ""  # Markup, or text that is shown as it is
 
 
-class Canvas:
-    """A figure of which only the `moving` artists are drawn anew; the rest stays as it was."""
-
-    def __init__(self, figure: Figure, moving: list[Artist]) -> None:
-        self._moving, self._canvas = moving, FigureCanvasAgg(figure)
-        for artist in moving:
-            artist.set_animated(True)
-        self._canvas.draw()
-        self._still = self._canvas.copy_from_bbox(figure.bbox)
-
-    def png(self) -> bytes:
-        """The figure as it is now, as PNG."""
-        self._canvas.restore_region(self._still)
-        for artist in self._moving:
-            artist.axes.draw_artist(artist)  # type: ignore[union-attr]
-        return as_png(np.asarray(self._canvas.buffer_rgba()))
-
-
-class Bench(Living, widgets.VBox):  # type: ignore[misc]
+class Bench(Cell):
     """Controls, and a picture that `show(**values)` makes of their values whenever one moves.
 
     controls  {name: widget with a value}
     buttons   {label: what it does}; then the picture is made anew
-    note      where a still picture stands, if it has a place already
-    slot      only one of a slot lives at a time: to run a cell again closes the older one
+    scene     a live scene that `show` moves, above the picture
+    panel     the controls as they are laid out; one under the other, if not given
 
-    What goes wrong in `show` or in a button is told in the bench, in words, and the bench stays.
+    The status says what goes wrong in `show` or in a button, and the bench stays. A subclass
+    says what it is made of, and overrides nothing.
     """
 
     def __init__(
@@ -66,49 +41,54 @@ class Bench(Living, widgets.VBox):  # type: ignore[misc]
         *,
         slot: str | None,
         buttons: Mapping[str, Callable[[], None]] | None = None,
-        note: Note | None = None,
+        scene: Scene | None = None,
+        panel: Sequence[widgets.Widget] | None = None,
     ) -> None:
-        self.controls, self.slot = doors.named("controls", controls, _control), slot
-        self._show, self._stale = function("show", show), False
-        buttons = doors.named("buttons", buttons or {}, function)
+        controls = doors.named("controls", controls, _control)
+        show, buttons = function("show", show), doors.named("buttons", buttons or {}, function)
+        super().__init__(slot, Note() if scene is None else scene.note)
+        self.controls, self.scene = controls, scene
+        self._show, self._stale = show, False
         self._waiting: list[Callable[[], None]] = []
-        self._act = Actor()
-        self.status = Status()
         self._picture, self._below = Picture(), Prose()
-        self.note = note or Note()
         self.buttons = {label: widgets.Button(description=label) for label in buttons}
         for label, act in buttons.items():
             self.buttons[label].on_click(lambda _, act=act: self._after(act))
-        for control in self.controls.values():
+        for control in controls.values():
             control.observe(lambda _: self._after(None), "value")
-        rows = [*self.controls.values()]
-        if self.buttons:
+        rows = [*(controls.values() if panel is None else panel)]
+        if buttons:
             rows.append(widgets.HBox(list(self.buttons.values())))
-        super().__init__([*rows, self.status, self._picture, self.note.widget, self._below])
         self.refresh()
+        self.children = self._laid_out(rows)
 
     @property
     def values(self) -> dict[str, Any]:
-        """What the controls say now."""
+        """The values of the controls, by name."""
         return {name: control.value for name, control in self.controls.items()}
 
     @property
     def words(self) -> str:
-        """What the picture shows, for those who cannot see it."""
+        """Say what the picture shows, for those who cannot see it."""
         return str(self._picture.alt)
 
     def refresh(self) -> None:
         """Do what buttons have asked for, and make the picture anew."""
+        self.attempt(self._draw)
+
+    def still(self) -> Still:
+        """Draw it for a place without a kernel."""
+        png = self._picture.png if self.scene is None else self.scene.still().png
+        return Still(png, self.words)
+
+    def _draw(self) -> None:
         waiting, self._waiting, self._stale = self._waiting, [], False
-        try:
-            for act in waiting:
-                act()
-            png, words, below = self._show(**self.values)
-        except Exception as error:
-            self.status.wrong = in_words(error)
-            return
-        self.status.wrong = ""
-        self._picture.png, self._picture.alt, self._below.value = png, words, below
+        for act in waiting:
+            act()
+        shown = self._show(**self.values)
+        self._picture.png, self._picture.alt, self._below.value = shown
+        if self.scene is not None and self.scene.driver.description != shown.words:
+            self.scene.driver.description = shown.words
 
     def _after(self, act: Callable[[], None] | None) -> None:
         """Note what was asked for, and see to it that it is done; from any thread."""
@@ -121,38 +101,23 @@ class Bench(Living, widgets.VBox):  # type: ignore[misc]
         if self._stale:  # of several moves at once, the last one is drawn
             self.refresh()
 
-    def _repr_mimebundle_(self, **kwargs: Any) -> Any:
-        """The live widget, and beside it a still for places without a kernel."""
-        return self.note.beside(super()._repr_mimebundle_(**kwargs), self._still())
+    def _seen(self, new: bool) -> None:
+        if new:  # a page that has just opened knows no pose
+            self._after(None)
 
-    def _still(self) -> Still:
-        return Still(self._picture.png, self.words)
+    def _laid_out(self, rows: list[widgets.Widget]) -> list[widgets.Widget]:
+        """All parts: the controls above the picture, or beside the scene."""
+        scene = self.scene
+        if scene is None:
+            assert self.note is not None
+            return [*rows, self.status, self._picture, self.note.widget, self._below]
+        scene.driver.on_page = self._seen
+        scene.widget.layout.width = f"{scene.renderer.width}px"  # so that the panel has its place
+        column = widgets.VBox(rows, layout=widgets.Layout(flex="1 1 380px", min_width="340px"))
+        beside = widgets.HBox([scene.widget, column], layout=widgets.Layout(flex_flow="row wrap"))
+        chart = [self._picture] if self._picture.png else []
+        return [beside, self.status, *chart, self._below]
 
 
 def _control(name: str, value: Any) -> None:
     doors.has(name, value, "a widget with a value", "observe", "value")
-
-
-def slider(label: str, value: float, low: float, high: float, step: float) -> Any:
-    """A slider with room for its label; whole numbers where the step is one."""
-    kind = widgets.IntSlider if isinstance(step, int) else widgets.FloatSlider
-    return kind(
-        value=value, min=low, max=high, step=step, description=label, style=WIDE,
-        layout=widgets.Layout(width="560px", max_width="100%"),
-    )  # fmt: skip
-
-
-def log_slider(label: str, value: float, low: float, high: float, step: float = 0.05) -> Any:
-    """A slider from 10^low to 10^high."""
-    return widgets.FloatLogSlider(
-        value=value, min=low, max=high, step=step, description=label, style=WIDE,
-        readout_format=".3g", layout=widgets.Layout(width="560px", max_width="100%"),
-    )  # fmt: skip
-
-
-def choice(label: str, options: list[str], value: str | None = None) -> Any:
-    """Buttons of which one is pressed."""
-    style = {**WIDE, "button_width": "auto"}
-    return widgets.ToggleButtons(
-        options=options, value=value or options[0], description=label, style=style
-    )

@@ -1,10 +1,12 @@
 """Panels: named controls that carry what they do, and the one factory for each kind of control."""
 
 from collections.abc import Callable, Mapping, Sequence
-from math import log10
+from math import inf, log10
 from typing import Any, NamedTuple
 
 import ipywidgets as widgets
+
+from ikteach.view.widgets import doors
 
 Act = Callable[..., Any]
 Row = Any  # {name: control or Does}, or a widget
@@ -138,6 +140,7 @@ def slider(label: str, value: float, low: float, high: float, step: float, **loo
     look  `width` of the slider with its label, `label_width`, and traits of the slider
     """
     kind = widgets.IntSlider if isinstance(step, int) else widgets.FloatSlider
+    doors.within(f"the value of {label!r}", value, -inf, inf)
     low, high = min(low, value), max(high, value)
     return kind(value=value, min=low, max=high, step=step, **_look(label, **look))
 

@@ -28,7 +28,7 @@ class Strips(Living, anywidget.AnyWidget):
     """Three plots over the last seconds, on logarithmic axes.
 
     The distance of each effector of the shown method to its target, the mean distance of each
-    method, and each method's jitter, ‖Δ²θ‖ a tick. Lines differ in dashes as well as in colour.
+    method, and each method's jitter, ‖Δ²θ‖ per tick. Lines differ in dashes as well as in colour.
     """
 
     _esm, _css = script("view/live/strips.js"), style("view/live/strips.css")

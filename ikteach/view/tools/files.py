@@ -9,40 +9,39 @@ from ikteach.checks import function
 from ikteach.formats.session import load, save
 from ikteach.motion.live.log import Log
 from ikteach.motion.live.session import Session
+from ikteach.view.live.panel import tick_box
 from ikteach.view.tools.replay import Replay
 from ikteach.view.widgets import doors
-from ikteach.view.widgets.actor import Actor
-from ikteach.view.widgets.closing import Living, close_all
-from ikteach.view.widgets.status import Status
+from ikteach.view.widgets.cell import Cell
+from ikteach.view.widgets.closing import close_all
 
 
-class Keeper(Living, widgets.VBox):  # type: ignore[misc]
+class Keeper(Cell):
     """Save what happened, and open it again: file name, Save, Open.
 
     session   what is saved
     open_run  is given the run that was opened; if there is none, a `Replay` of it in this widget
-    slot      only one of a slot lives at a time: to run a cell again closes the older one
     """
 
     def __init__(
-        self, session: Session, open_run: Callable[[Log], None] | None = None, *,
-        folder: str | Path = ".", slot: str | None = "files",
-    ) -> None:  # fmt: skip
-        self.session, self.slot = doors.a(Session, "session", session), slot
-        self.folder = doors.folder(folder)
-        self._open_run = function("open_run", open_run or self._replay)
-        self._act = Actor()
+        self,
+        session: Session,
+        open_run: Callable[[Log], None] | None = None,
+        *,
+        folder: str | Path = ".",
+        slot: str | None = "files",
+    ) -> None:
+        session, folder = doors.a(Session, "session", session), doors.folder(folder)
+        open_run = function("open_run", open_run or self._replay)
+        super().__init__(slot)
+        self.session, self.folder, self._open_run = session, folder, open_run
         self.name = widgets.Text(value="session", description="File name")
-        self.replace = widgets.Checkbox(
-            value=False, description="replace files of that name", indent=False
-        )
-        self.saving = widgets.Button(description="Save the session")
-        self.opening = widgets.Button(description="Open and replay")
-        self.status, self.place = Status(), widgets.VBox()
-        self.saving.on_click(lambda _: self._act(self._save, self.status.fail))
-        self.opening.on_click(lambda _: self._act(self._open, self.status.fail))
+        self.replace = tick_box("replace files of that name")
+        self.saving = self.button("Save the session", self._save)
+        self.opening = self.button("Open and replay", self._open)
+        self.place = widgets.VBox()
         buttons = widgets.HBox([self.saving, self.opening])
-        super().__init__([self.name, self.replace, buttons, self.status, self.place])
+        self.children = [self.name, self.replace, buttons, self.status, self.place]
 
     def _path(self) -> Path:
         if not self.name.value.strip():

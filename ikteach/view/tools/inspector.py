@@ -10,61 +10,55 @@ from ikteach.motion.anatomy import Anatomy, anatomy
 from ikteach.motion.live.session import Session
 from ikteach.view.tools.inspector_pages import PAGES, Names, Page
 from ikteach.view.widgets import doors
-from ikteach.view.widgets.actor import Actor
-from ikteach.view.widgets.closing import Living
+from ikteach.view.widgets.cell import Cell
 from ikteach.view.widgets.page import style_tag
 from ikteach.view.widgets.picture import Picture
 from ikteach.view.widgets.prose import Prose, table
-from ikteach.view.widgets.status import Status
 
 STYLE = style_tag("view/tools/inspector.css")
 
 
-class Glass(Living, widgets.VBox):  # type: ignore[misc]
+class Glass(Cell):
     """The next tick of a session, taken apart: e, J, U Σ Vᵀ, each method's share, Δθ, movement.
 
     session  whose next tick is looked at; looking changes nothing in it
     stop     is called before looking, to stop whatever lets time pass: `player.pause`
     show     is called after "Do this tick", to draw the pose that came of it
-    slot     only one of a slot lives at a time: to run a cell again closes the older one
     """
 
     def __init__(
-        self, session: Session, stop: Callable[[], None] = lambda: None,
-        show: Callable[[], None] = lambda: None, *, slot: str | None = "glass",
-    ) -> None:  # fmt: skip
-        self.session, self.slot = doors.a(Session, "session", session), slot
-        self._stop, self._show = function("stop", stop), function("show", show)
+        self,
+        session: Session,
+        stop: Callable[[], None] = lambda: None,
+        show: Callable[[], None] = lambda: None,
+        *,
+        slot: str | None = "glass",
+    ) -> None:
+        session = doors.a(Session, "session", session)
+        stop, show = function("stop", stop), function("show", show)
+        super().__init__(slot)
+        self.session, self._stop, self._show = session, stop, show
         self.names = Names(session.effectors.names, session.tree.names)
         self.tick: Anatomy | None = None
         self._pages: dict[int, Page] = {}  # of this tick, drawn when they are first opened
         self.number = 0
-        self._act = Actor()
-        self.look_button = widgets.Button(
-            description="Stop the clock and look", button_style="primary", layout={"width": "200px"}
-        )
-        self.do = widgets.Button(description="Do this tick", disabled=True)
-        self.back = widgets.Button(description="Back", disabled=True)
-        self.next = widgets.Button(description="Next", disabled=True)
+        look = {"button_style": "primary", "layout": {"width": "200px"}}
+        self.look_button = self.button("Stop the clock and look", self.look, **look)
+        self.do = self.button("Do this tick", self.advance, disabled=True)
+        self.back = self.button("Back", lambda: self.turn(-1), disabled=True)
+        self.next = self.button("Next", lambda: self.turn(1), disabled=True)
         self.method = widgets.Dropdown(
             options=list(session.methods), value=session.method, description="Method"
         )
-        self.status, self.picture, self.table = Status(), Picture(), Prose()
-        for button, action in (
-            (self.look_button, self.look), (self.do, self.advance),
-            (self.back, lambda: self.turn(-1)), (self.next, lambda: self.turn(1)),
-        ):  # fmt: skip
-            button.on_click(lambda _, action=action: self._act(action, self.status.fail))
-        self.method.observe(lambda _: self._act(self._again, self.status.fail), "value")
-        super().__init__(
-            [
-                widgets.HBox([self.look_button, self.method, self.do]),
-                widgets.HBox([self.back, self.next]),
-                self.status,
-                self.picture,
-                self.table,
-            ]
-        )
+        self.method.observe(self.guarded(lambda _: self._again()), "value")
+        self.picture, self.table = Picture(), Prose()
+        self.children = [
+            widgets.HBox([self.look_button, self.method, self.do]),
+            widgets.HBox([self.back, self.next]),
+            self.status,
+            self.picture,
+            self.table,
+        ]
         self.status.say("Nothing is under the glass yet.")
 
     def look(self) -> None:
@@ -73,10 +67,15 @@ class Glass(Living, widgets.VBox):  # type: ignore[misc]
         session, method = self.session, self.method.value
         *_, targets = session.ahead()
         self.tick = anatomy(
-            session.tree, session.theta[method], session.effectors, targets,
-            session.methods[method], methods=session.methods,
-            mobility=session.gait.mobility(session.tree), **session.options_of(method),
-        )  # fmt: skip
+            session.tree,
+            session.theta[method],
+            session.effectors,
+            targets,
+            session.methods[method],
+            methods=session.methods,
+            mobility=session.gait.mobility(session.tree),
+            **session.options_of(method),
+        )
         self._pages.clear()
         self._turn_to(self.number)
 
@@ -88,7 +87,7 @@ class Glass(Living, widgets.VBox):  # type: ignore[misc]
         self.look()
 
     def turn(self, pages: int) -> None:
-        """So many pages on, or back where negative."""
+        """Turn that many pages on, or back where negative."""
         self._turn_to(self.number + pages)
 
     @property

@@ -1,6 +1,5 @@
 """The pages of the glass: one tick as pictures, each with its numbers in words and in a table."""
 
-import io
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
@@ -10,13 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ikteach.arrays import Array
-from ikteach.markup import as_label
 from ikteach.motion.anatomy import Anatomy
-from ikteach.view.stage.colours import BLUE, GREEN, ORANGE, PURPLE, RED, SKY
-
-COLOURS = (BLUE, ORANGE, GREEN, RED, PURPLE, SKY)
-HATCHES = ("", "///", "...", "xxx", "\\\\\\", "++")  # so that colour is not the only sign
-SIGNED = "PuOr_r"  # a scale that all eyes can read, white at 0
+from ikteach.view import charts
+from ikteach.view.stage.colours import BLUE
+from ikteach.view.widgets.picture import png_of
 
 
 class Page(NamedTuple):
@@ -30,7 +26,7 @@ class Page(NamedTuple):
 
 
 class Names(NamedTuple):
-    """What rows and columns of J are called."""
+    """Names of the rows and columns of J."""
 
     effectors: Sequence[str]
     joints: Sequence[str]
@@ -42,7 +38,7 @@ class Names(NamedTuple):
 
 
 def error_page(one: Anatomy, names: Names) -> Page:
-    """e = t − s."""
+    """Show e = t − s."""
     e = one.e.reshape(-1, 3)
     figure, axes = _figure()
     _bars(axes, names.effectors, dict(zip("xyz", 100 * e.T, strict=True)))
@@ -51,16 +47,17 @@ def error_page(one: Anatomy, names: Names) -> Page:
     table["distance"] = np.linalg.norm(e, axis=1)
     far = _list(f"{name} {100 * d:.1f} cm" for name, d in table["distance"].items())
     text = "How far each effector is from its target, coordinate by coordinate: the 3k numbers "
-    return _page(
-        "The error e", text + "that the solver is to bring to zero.", figure,
-        f"Bars of the error. From its target: {far}.", table,
-    )  # fmt: skip
+    text += "that the solver is to bring to zero."
+    words = f"Bars of the error. From its target: {far}."
+    return Page("The error e", text, png_of(figure), words, table)
 
 
 def jacobian_page(one: Anatomy, names: Names) -> Page:
-    """J as a heat map."""
+    """Show J as a heat map."""
     figure, axes = _figure(height=4.6)
-    _heat(figure, axes, one.J, names.rows, names.joints, numbers=True)
+    image = _heat(axes, one.J, names.rows, names.joints)
+    figure.colorbar(image, ax=axes, pad=0.01)
+    _number(axes, one.J)
     axes.set_title("J [m/rad]: how far each effector moves for a small turn of each joint")
     zeros = float((one.J == 0).mean())
     row, column = divmod(int(abs(one.J).argmax()), one.J.shape[1])
@@ -70,19 +67,18 @@ def jacobian_page(one: Anatomy, names: Names) -> Page:
         f"{names.rows[row]}."
     )
     text = "A row for each coordinate of each effector, a column for each joint. White is zero: "
-    return _page(
-        "The Jacobian J", text + "that joint does not carry that effector, or turns it elsewhere.",
-        figure, alt, pd.DataFrame(one.J, index=names.rows, columns=list(names.joints)),
-    )  # fmt: skip
+    text += "that joint does not carry that effector, or turns it elsewhere."
+    table = pd.DataFrame(one.J, index=names.rows, columns=list(names.joints))
+    return Page("The Jacobian J", text, png_of(figure), alt, table)
 
 
 def svd_page(one: Anatomy, names: Names) -> Page:
-    """J = U Σ Vᵀ."""
+    """Show J = U Σ Vᵀ."""
     r = len(one.sigma)
     figure = Figure(figsize=(10, 4.4), dpi=100, layout="constrained")
     left, middle, right = figure.subplots(1, 3, width_ratios=[1, 0.8, 1.5])
     number = [str(i + 1) for i in range(r)]
-    _heat(None, left, one.U, names.rows, number)
+    _heat(left, one.U, names.rows, number)
     left.set(title="U: directions of the error", xlabel="direction")
     middle.barh(number, one.sigma, color=BLUE)
     middle.invert_yaxis()
@@ -91,7 +87,7 @@ def svd_page(one: Anatomy, names: Names) -> Page:
     for i, sigma in enumerate(one.sigma):
         middle.text(sigma, i, f" {sigma:.3g}", va="center", fontsize=7)
     middle.set_xlim(0, 1.25 * max(one.sigma[0], 1e-9))
-    _heat(None, right, one.Vt, number, names.joints)
+    _heat(right, one.Vt, number, names.joints)
     right.set(title="Vᵀ: turns of the joints", ylabel="direction")
     strongest, weakest = (_most(one.Vt[i], names.joints) for i in (0, -1))
     alt = (
@@ -105,13 +101,13 @@ def svd_page(one: Anatomy, names: Names) -> Page:
     table.insert(0, "σ", one.sigma)
     text = (
         "J turned into independent directions: turning the joints along a row of Vᵀ moves the "
-        "effectors along the same column of U, σ metres a radian."
+        "effectors along the same column of U, σ metres per radian."
     )
-    return _page("J = U Σ Vᵀ", text, figure, alt, table)
+    return Page("J = U Σ Vᵀ", text, png_of(figure), alt, table)
 
 
 def directions_page(one: Anatomy, names: Names) -> Page:
-    """What each method does to each singular direction."""
+    """Show how each method treats each singular direction."""
     number = [str(i + 1) for i in range(len(one.sigma))]
     figure = Figure(figsize=(10, 4.8), dpi=100, layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=[1, 2])
@@ -119,10 +115,8 @@ def directions_page(one: Anatomy, names: Names) -> Page:
     above.set(title="|α| = |uᵀe|: how much of the error lies along each direction [cm]")
     above.grid(axis="y", alpha=0.3)
     _bars(below, number, one.filters)
-    below.set(
-        title="σ f: the share of it that a step takes away (1 is all)",
-        xlabel="singular direction, strongest first", ylabel="filter factor",
-    )  # fmt: skip
+    below.set(xlabel="singular direction, strongest first", ylabel="filter factor")
+    below.set_title("σ f: the share of it that a step takes away (1 is all)")
     below.axhline(1, color="0.3", lw=0.8, ls=":")
     each = "; ".join(
         f"{name}: {_list(f'{value:.2f}' for value in values)}"
@@ -139,11 +133,11 @@ def directions_page(one: Anatomy, names: Names) -> Page:
         "Every method answers Δθ = Σ f α v, direction by direction. They differ in f alone: whom "
         "they trust, whom they damp, whom they leave out."
     )
-    return _page("What each method does to each direction", text, figure, alt, table)
+    return Page("What each method does to each direction", text, png_of(figure), alt, table)
 
 
 def step_page(one: Anatomy, names: Names) -> Page:
-    """Δθ before and after cap and limits."""
+    """Show Δθ before and after cap and limits."""
     stages = {"wanted": one.wanted, "after the cap": one.capped, "after the limits": one.dtheta}
     degrees = {name: np.degrees(values) for name, values in stages.items()}
     figure = Figure(figsize=(10, 4.6), dpi=100, layout="constrained")
@@ -172,11 +166,11 @@ def step_page(one: Anatomy, names: Names) -> Page:
     )
     table["held"] = one.held
     text = "What the solver asks for, what the cap leaves, and what the joints' limits let by."
-    return _page("Δθ, before and after cap and limits", text, figure, alt, table)
+    return Page("Δθ, before and after cap and limits", text, png_of(figure), alt, table)
 
 
 def movement_page(one: Anatomy, names: Names) -> Page:
-    """Predicted against actual movement."""
+    """Show predicted against actual movement."""
     figure, axes = _figure()
     moved = {"predicted: JΔθ": one.predicted.ravel(), "actual": one.actual.ravel()}
     _bars(axes, names.rows, {name: 100 * values for name, values in moved.items()})
@@ -193,12 +187,18 @@ def movement_page(one: Anatomy, names: Names) -> Page:
         "J speaks of small steps. What it predicts and what happens part with the square of the "
         "step: half the step, a quarter of the gap."
     )
-    return _page("Predicted against actual", text, figure, f"Bars of movement. {each}.", table)
+    words = f"Bars of movement. {each}."
+    return Page("Predicted against actual", text, png_of(figure), words, table)
 
 
 PAGES: Sequence[Callable[[Anatomy, Names], Page]] = (
-    error_page, jacobian_page, svd_page, directions_page, step_page, movement_page,
-)  # fmt: skip
+    error_page,
+    jacobian_page,
+    svd_page,
+    directions_page,
+    step_page,
+    movement_page,
+)
 
 
 def _figure(height: float = 3.8) -> tuple[Figure, Axes]:
@@ -206,58 +206,37 @@ def _figure(height: float = 3.8) -> tuple[Figure, Axes]:
     return figure, figure.subplots()
 
 
-def _turn(axes: Axes) -> None:
+def _turn(axes: Axes, size: int = 8) -> None:
     """Write the labels below slantwise: they are long."""
     for label in axes.get_xticklabels():
-        label.set(rotation=60, ha="right", rotation_mode="anchor", fontsize=8)
+        label.set(rotation=60, ha="right", rotation_mode="anchor", fontsize=size)
 
 
 def _bars(axes: Axes, labels: Sequence[str], groups: dict[str, Array], first: int = 0) -> None:
-    """Bars side by side, a group a label; hatched, so that colour is not the only sign."""
-    width = 0.84 / len(groups)
-    at = np.arange(len(labels))
-    for i, (name, values) in enumerate(groups.items()):
-        axes.bar(
-            at + (i - (len(groups) - 1) / 2) * width, values, width, label=as_label(name),
-            color=COLOURS[(i + first) % len(COLOURS)], hatch=HATCHES[(i + first) % len(HATCHES)],
-            edgecolor="white", linewidth=0.4,
-        )  # fmt: skip
-    axes.set_xticks(at, list(map(as_label, labels)))
+    charts.draw_bars(axes, labels, groups, first=first)
     axes.axhline(0, color="0.3", lw=0.8)
-    axes.grid(axis="y", alpha=0.3)
     axes.legend(fontsize=8, ncols=len(groups))
 
 
-def _heat(
-    figure: Figure | None, axes: Axes, matrix: Array, rows: Sequence[str],
-    columns: Sequence[str], *, numbers: bool = False,
-) -> None:  # fmt: skip
-    """A matrix in colours, from −most to most, with its rows and columns named."""
-    most = max(float(abs(matrix).max()), 1e-9)
-    image = axes.imshow(matrix, cmap=SIGNED, vmin=-most, vmax=most, aspect="auto")
-    small = 8 if len(columns) <= 14 else 7
-    turned = 60 if max(map(len, columns), default=0) > 2 else 0
-    across, down = list(map(as_label, columns)), list(map(as_label, rows))
-    axes.set_xticks(range(len(columns)), across, rotation=turned, fontsize=small,
-                    ha="right" if turned else "center", rotation_mode="anchor")  # fmt: skip
-    axes.set_yticks(range(len(rows)), down, fontsize=small)
-    if figure is not None:
-        figure.colorbar(image, ax=axes, pad=0.01)
-    if numbers and matrix.size <= 400:
-        for (i, j), value in np.ndenumerate(matrix):
-            if abs(value) >= 0.005:
-                ink = "white" if abs(value) > 0.6 * most else "0.2"
-                axes.text(j, i, f"{value:.2f}", ha="center", va="center", fontsize=6, color=ink)
+def _heat(axes: Axes, matrix: Array, rows: Sequence[str], columns: Sequence[str]) -> Any:
+    """Draw a matrix in colours, long names of columns slantwise; give the image."""
+    image = charts.draw_heat(axes, matrix, rows, columns)
+    if max(map(len, columns), default=0) > 2:
+        _turn(axes, 8 if len(columns) <= 14 else 7)
+    return image
 
 
-def _page(title: str, text: str, figure: Figure, alt: str, table: pd.DataFrame) -> Page:
-    out = io.BytesIO()
-    figure.savefig(out, format="png")
-    return Page(title, text, out.getvalue(), alt, table)
+def _number(axes: Axes, matrix: Array) -> None:
+    """Write into its squares the numbers of a matrix that is not too large."""
+    most = abs(matrix).max()
+    for (i, j), value in np.ndenumerate(matrix if matrix.size <= 400 else np.zeros((0, 0))):
+        if abs(value) >= 0.005:
+            ink = "white" if abs(value) > 0.6 * most else "0.2"
+            axes.text(j, i, f"{value:.2f}", ha="center", va="center", fontsize=6, color=ink)
 
 
 def _most(values: Array, names: Sequence[str], unit: str = "") -> str:
-    """The name of the largest, and how large it is."""
+    """Name the largest, and how large it is."""
     i = int(abs(values).argmax())
     return f"{names[i]} by {values[i]:.2f}{unit}"
 

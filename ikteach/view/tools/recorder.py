@@ -6,17 +6,17 @@ from concurrent.futures import ThreadPoolExecutor
 from math import ceil, inf, isfinite
 from pathlib import Path
 from time import monotonic
+from typing import Any
 
 import ipywidgets as widgets
 
 from ikteach.formats import movie
 from ikteach.motion.live.session import Session
+from ikteach.view.live.panel import tick_box
 from ikteach.view.raster.film import Film, Shot, shot
 from ikteach.view.stage.stage import sides_of
 from ikteach.view.widgets import doors
-from ikteach.view.widgets.actor import Actor
-from ikteach.view.widgets.closing import Living
-from ikteach.view.widgets.status import Status
+from ikteach.view.widgets.cell import Cell
 
 NOW, PAST = "from now on", "what has been"
 OFTEN = 0.2  # [s] between two moves of the progress bar
@@ -28,59 +28,47 @@ class Stopped(Exception):
     """Stop was pressed."""
 
 
-class Recorder(Living, widgets.VBox):  # type: ignore[misc]
+class Recorder(Cell):
     """Film a session to an MP4, AVI or GIF: name, size, rate and seconds, Start and Stop.
 
     Display it in a notebook. The pictures are drawn and encoded by a thread of their own, so that
-    cells and figures go on; the movie has its name only once it is complete. Only one recorder of a
-    `slot` lives at a time: to run a cell again closes the one that it made before.
+    cells and figures go on; the movie has its name only once it is complete.
     """
 
     def __init__(
         self, session: Session, *, folder: str | Path = ".", slot: str | None = "movie"
     ) -> None:
-        self.session, self.slot = doors.a(Session, "session", session), slot
-        self.folder = doors.folder(folder)
+        session, folder = doors.a(Session, "session", session), doors.folder(folder)
+        super().__init__(slot)
+        self.session, self.folder = session, folder
         self._task: asyncio.Task[None] | None = None
         self._stop = False
-        self._act = Actor()
         self.name = widgets.Text(value="walk", description="File name", style=LABEL)
-        self.kind = widgets.ToggleButtons(
-            options=[(ending[1:].upper(), ending) for ending in movie.KINDS], description="Format",
-            style={"button_width": "auto", **LABEL},
-        )  # fmt: skip
-        self.width = widgets.IntText(value=640, description="Width [pixels]", style=LABEL)
-        self.height = widgets.IntText(value=480, description="Height", style=LABEL)
-        self.rate = widgets.FloatText(value=30, description="Frames a s", style=LABEL)
-        self.seconds = widgets.FloatText(value=5, description="Seconds", style=LABEL)
-        self.which = widgets.Dropdown(options=[NOW, PAST], description="Film", style=LABEL)
+        kinds = [(ending[1:].upper(), ending) for ending in movie.KINDS]
+        look = {"button_width": "auto", **LABEL}
+        self.kind = widgets.ToggleButtons(options=kinds, description="Format", style=look)
+        self.width = _box(widgets.IntText, "Width [pixels]", value=640)
+        self.height = _box(widgets.IntText, "Height", value=480)
+        self.rate = _box(widgets.FloatText, "Frames per s", value=30)
+        self.seconds = _box(widgets.FloatText, "Seconds", value=5)
+        self.which = _box(widgets.Dropdown, "Film", options=[NOW, PAST])
         sides = sides_of(session.tree, session.effectors)
-        self.side = widgets.Dropdown(options=sides, description="View", style=LABEL)
-        self.replace = widgets.Checkbox(
-            value=False, description="replace a file of that name", indent=False
-        )
-        self.start = widgets.Button(description="Start recording", button_style="primary")
-        self.stop = widgets.Button(description="Stop recording", disabled=True)
-        self.progress = widgets.IntProgress(
-            value=0, max=1, description="Movie", style={"bar_color": "#0072b2", **LABEL}
-        )
-        self.status = Status()
-        self.start.on_click(lambda _: self._act(self.begin, self.status.fail))
-        self.stop.on_click(lambda _: self.halt())
-        for one in (self.width, self.height, self.rate, self.seconds, self.which, self.side):
-            one.layout.width = "210px"
-        super().__init__(
-            [
-                self.name,
-                widgets.HBox([self.kind]),
-                widgets.HBox([self.width, self.height]),
-                widgets.HBox([self.rate, self.seconds]),
-                widgets.HBox([self.which, self.side]),
-                self.replace,
-                widgets.HBox([self.start, self.stop, self.progress]),
-                self.status,
-            ]
-        )
+        self.side = _box(widgets.Dropdown, "View", options=sides)
+        self.replace = tick_box("replace a file of that name")
+        self.start = self.button("Start recording", self.begin, button_style="primary")
+        self.stop = self.button("Stop recording", self.halt, disabled=True)
+        bar = {"bar_color": "#0072b2", **LABEL}
+        self.progress = widgets.IntProgress(value=0, max=1, description="Movie", style=bar)
+        self.children = [
+            self.name,
+            widgets.HBox([self.kind]),
+            widgets.HBox([self.width, self.height]),
+            widgets.HBox([self.rate, self.seconds]),
+            widgets.HBox([self.which, self.side]),
+            self.replace,
+            widgets.HBox([self.start, self.stop, self.progress]),
+            self.status,
+        ]
         self.status.say("Nothing is recorded yet.")
         try:
             movie.library()
@@ -90,7 +78,7 @@ class Recorder(Living, widgets.VBox):  # type: ignore[misc]
 
     @property
     def path(self) -> Path:
-        """The file that the name and the format make."""
+        """Join the name and the format to a file."""
         name = Path(self.name.value.strip())
         stem = name.with_suffix("") if name.suffix.lower() in movie.KINDS else name
         return self.folder / f"{stem}{self.kind.value}"
@@ -121,7 +109,7 @@ class Recorder(Living, widgets.VBox):  # type: ignore[misc]
             path, frames = await self._film()
         except Stopped:
             self.status.say("Stopped: no file was written.")
-        except Exception as error:  # told to the person, and the notebook goes on
+        except Exception as error:  # the notebook goes on
             self.status.fail(_sentence(error))
         else:
             self.progress.value = self.progress.max
@@ -130,54 +118,62 @@ class Recorder(Living, widgets.VBox):  # type: ignore[misc]
             self.start.disabled, self.stop.disabled = False, True
 
     async def _film(self) -> tuple[Path, int]:
-        path, rate, session = self.path, self.rate.value, self.session
+        """Make the movie; its file, and how many frames it has."""
+        path, rate = self.path, self.rate.value
+        options = self._options(path)
+        begin, seconds, past = self._span()
+        frames, size = max(1, round(seconds * rate)), options["size"]
+        camera = Film(
+            *(self.session.tree, self.session.effectors),
+            size=size,
+            side=self.side.value,
+            finer=2 if max(size) <= 1000 else 1,
+        )
+        self.progress.max, self.progress.value = frames, 0
+        self.status.say(f"Recording: 0 of {frames} frames.")
+        loop, done, last = asyncio.get_running_loop(), 0, monotonic()
+        with movie.writing(path, **options) as add, ThreadPoolExecutor(1, "ikteach-movie") as pool:
+            async for one in self._shots(begin, frames, rate, past):
+                await loop.run_in_executor(pool, lambda: add(camera.picture(one)))  # noqa: B023
+                done += 1
+                if monotonic() - last > OFTEN:
+                    self.progress.value, last = done, monotonic()
+                if done * PARTS // frames > (done - 1) * PARTS // frames:
+                    self.status.say(f"Recording: {done} of {frames} frames.")
+        return path, frames
+
+    def _options(self, path: Path) -> dict[str, Any]:
+        """Check what is asked for, but for the seconds, and give it as `movie` takes it."""
         if not self.name.value.strip():
             raise ValueError("the movie needs a file name")
-        asked = {
-            "size": (self.width.value, self.height.value), "rate": rate,
-            "overwrite": self.replace.value,
-        }  # fmt: skip
+        size = self.width.value, self.height.value
+        options = {"size": size, "rate": self.rate.value, "overwrite": self.replace.value}
         try:
-            movie.kind_of(path, **asked)
+            movie.kind_of(path, **options)
         except FileExistsError:
             raise FileExistsError(
                 f"there is a file {str(path)!r} already; tick the box to replace it"
             ) from None
-        seconds, most = self.seconds.value, session.dt * (session.record.maxlen or inf)
+        return options
+
+    def _span(self) -> tuple[float, float, bool]:
+        """When the movie begins and how long it is [s], and whether it is of what has been."""
+        session, seconds, past = self.session, self.seconds.value, self.which.value == PAST
+        most = session.dt * (session.record.maxlen or inf)
         if not (isfinite(seconds) and 0 < seconds <= most):
             raise ValueError(f"the seconds must be more than 0 and at most {most:g}, not {seconds}")
-        begin, past = session.ticks * session.dt, self.which.value == PAST
+        begin = session.ticks * session.dt
         if past:
             if not session.record:
                 raise ValueError("there is nothing to film yet: let the figure move first")
             first = (session.record[0].tick - 1) * session.dt
             begin, seconds = max(first, begin - seconds), min(seconds, begin - first)
-        frames = max(1, round(seconds * rate))
-        camera = Film(
-            session.tree, session.effectors, size=asked["size"], side=self.side.value,
-            finer=2 if max(asked["size"]) <= 1000 else 1,
-        )  # fmt: skip
-        self.progress.max, self.progress.value = frames, 0
-        self.status.say(f"Recording: 0 of {frames} frames.")
-        done, told = 0, monotonic()
-        with movie.writing(path, **asked) as add, ThreadPoolExecutor(1, "ikteach-movie") as pool:
-            async for one in self._shots(begin, frames, rate, past):
-
-                def work(one: Shot = one) -> None:
-                    add(camera.picture(one))
-
-                await asyncio.get_running_loop().run_in_executor(pool, work)
-                done += 1
-                if monotonic() - told > OFTEN:
-                    self.progress.value, told = done, monotonic()
-                if done * PARTS // frames > (done - 1) * PARTS // frames:
-                    self.status.say(f"Recording: {done} of {frames} frames.")
-        return path, frames
+        return begin, seconds, past
 
     async def _shots(
         self, begin: float, frames: int, rate: float, past: bool
     ) -> AsyncIterator[Shot]:
-        """The shots, each as soon as its time has come."""
+        """Give the shots, each as soon as its time has come."""
         session, runs, i = self.session, self.session.runs, 0
         while i < frames:
             if self._stop:
@@ -198,6 +194,11 @@ class Recorder(Living, widgets.VBox):  # type: ignore[misc]
                     raise Stopped
                 yield shot(run, begin + i / rate, title=title)
                 i += 1
+
+
+def _box(kind: Any, label: str, **traits: Any) -> Any:
+    """Make a control that fits beside another."""
+    return kind(description=label, style=LABEL, layout={"width": "210px"}, **traits)
 
 
 def _sentence(error: Exception) -> str:

@@ -7,9 +7,17 @@ LONG = 600  # letters of an error that a person is shown
 
 
 def in_words(error: Exception) -> str:
-    """What went wrong, as the person is told."""
+    """Say to a person what went wrong."""
     words = str(error)[:LONG] or type(error).__name__
     return f"That did not work: {words}"
+
+
+def attempt(action: Callable[[], object], tell: Callable[[str], object]) -> None:
+    """Do it, and tell in words what goes wrong."""
+    try:
+        action()
+    except Exception as error:  # a student's own code may raise anything
+        tell(in_words(error))
 
 
 class Actor:
@@ -28,15 +36,10 @@ class Actor:
     def __call__(
         self, action: Callable[[], object], fail: Callable[[str], None] | None = None
     ) -> None:
-        """Do it; with `fail`, tell that in words what went wrong, and go on."""
+        """Have it done; with `fail`, tell that in words what goes wrong, and go on."""
 
         def act() -> None:
-            try:
-                action()
-            except Exception as error:
-                if fail is None:
-                    raise
-                fail(in_words(error))
+            action() if fail is None else attempt(action, fail)
 
         if self.loop is None or self.loop.is_closed():
             act()

@@ -1,8 +1,9 @@
 """Life and death of what a cell shows: made whole or not at all, and closed with all it made.
 
-The kernel keeps every widget until it is closed, and tells a page that is loaded anew the state of
-each. One that holds a closed widget cannot be told, and then no widget of the notebook comes back.
-So nothing here closes a widget but `close_all`, which leaves nobody behind who holds a closed one.
+The kernel keeps every widget until it is closed, and sends a page that is loaded anew the state of
+each. The state of one that holds a closed widget cannot be sent, and then no widget of the notebook
+comes back. So nothing here closes a widget but `close_all`, which leaves nobody behind who holds a
+closed one.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -22,7 +23,7 @@ _now = local()  # .parts: the list of what is made now, in this thread
 
 
 class Living:
-    """What lives in a cell, a widget or the holder of some, and how it comes to its end.
+    """A widget in a cell, or a holder of some, that comes to its end in one way.
 
     If making it fails, what it had made until then is closed. `close` closes all that it made and
     all that is in it. Of all that have the same `slot` the newest lives: a cell that is run again
@@ -51,7 +52,7 @@ class Living:
 
 
 def occupant(slot: str | None) -> Living | None:
-    """What lives under this slot, if anything does."""
+    """Find the one that lives under this slot, if any."""
     return None if slot is None else _slots.get(slot)
 
 
@@ -69,7 +70,7 @@ def close_all(*roots: widgets.Widget) -> None:
 
 
 def _whole(make: Callable[..., None]) -> Callable[..., None]:
-    """An `__init__` that leaves nothing behind when it fails, and remembers what it made."""
+    """Wrap an `__init__`: it leaves nothing when it fails, and remembers its parts."""
 
     taken = signature(make).parameters
     open_ended = any(one.kind is one.VAR_KEYWORD for one in taken.values())
@@ -126,7 +127,7 @@ widgets.Widget.on_widget_constructed(_note)
 
 
 def _below(roots: Iterable[Any]) -> dict[str, widgets.Widget]:
-    """These widgets that live, and those that they hold, by their ids."""
+    """Find the living among these widgets and all that they hold, by their ids."""
     found: dict[str, widgets.Widget] = {}
     waiting = list(roots)[::-1]
     while waiting:
@@ -141,7 +142,7 @@ def _below(roots: Iterable[Any]) -> dict[str, widgets.Widget]:
 
 
 def _within(value: Any) -> Iterator[widgets.Widget]:
-    """The widgets in the value of a trait."""
+    """Find the widgets in the value of a trait."""
     if isinstance(value, widgets.Widget):
         yield value
     elif isinstance(value, dict | list | tuple):

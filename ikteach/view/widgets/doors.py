@@ -1,4 +1,4 @@
-"""What widgets refuse before they make anything: the culprit's name, and what is allowed."""
+"""Doors of widgets: they refuse with the culprit's name, and say what is allowed."""
 
 import os
 from collections.abc import Callable, Iterable, Mapping
@@ -31,7 +31,7 @@ def has(name: str, value: Any, what: str, *parts: str) -> None:
 
 
 def body(tree: Any, effectors: Any) -> Figure:
-    """A tree and the effectors on it; TypeError or ValueError says what they are not."""
+    """Check a tree and the effectors on it; TypeError or ValueError says what is wrong."""
     a(Tree, "the tree", tree), a(Effectors, "the effectors", effectors)
     if effectors.carried.shape[-1] != len(tree):
         joints = effectors.carried.shape[-1]
@@ -40,7 +40,7 @@ def body(tree: Any, effectors: Any) -> Figure:
 
 
 def figure(value: Any) -> Figure:
-    """A figure, or a pair of its parts; TypeError says what it is not."""
+    """Check a figure, or the pair of its parts; TypeError says what is wrong."""
     if not (isinstance(value, tuple) and len(value) == 2):
         raise TypeError(
             "a figure is its tree and its effectors, as figures.human() gives them, not "
@@ -52,7 +52,7 @@ def figure(value: Any) -> Figure:
 def scene(
     tree: Any, effectors: Any, names: Any, apart: Any, width: Any, height: Any
 ) -> tuple[int, int]:
-    """Check what a scene is made of; its width and height [pixels]."""
+    """Check the parts of a scene; its width and height [pixels]."""
     body(tree, effectors)
     if not words("the names of the figures", names):
         raise ValueError("a scene needs at least one figure")
@@ -64,37 +64,38 @@ def scene(
 
 
 def within(name: str, value: Any, low: float, high: float) -> float:
-    """One finite number from low to high, as a float; ValueError names what is not."""
+    """Check one finite number from low to high, as a float; ValueError names what is not."""
     real = isinstance(value, Real) and not isinstance(value, bool | np.bool_)
     if not (real and low <= value <= high and value < np.inf):
         allowed = f"{low:g} or more" if high == np.inf else f"from {low:g} to {high:g}"
-        raise ValueError(f"{name} must be a number, {allowed}, not {shown(value)}")
+        what = "a finite number" if low == -np.inf else f"a number, {allowed}"
+        raise ValueError(f"{name} must be {what}, not {shown(value)}")
     return float(value)
 
 
 def text(name: str, value: Any) -> str:
-    """Some text; TypeError names what is none."""
+    """Check a text; TypeError names what is none."""
     if not isinstance(value, str):
         raise TypeError(f"{name} must be text, not {shown(value)}")
     return value
 
 
 def words(name: str, values: Any) -> list[str]:
-    """A list of texts, and not one text; TypeError names what is none."""
+    """Check a list of texts, and not one text; TypeError names what is none."""
     if isinstance(values, str) or not isinstance(values, Iterable):
         raise TypeError(f"{name} must be a list of texts, not {shown(values)}")
     return [text(f"each of {name}", value) for value in values]
 
 
 def folder(value: Any) -> Path:
-    """A folder, by its path; TypeError names what is none."""
+    """Check a folder, by its path; TypeError names what is none."""
     if not isinstance(value, str | os.PathLike):
         raise TypeError(f"folder must be a path, not {shown(value)}")
     return Path(value)
 
 
 def named(name: str, values: Any, door: Callable[[str, Any], object]) -> dict[str, Any]:
-    """A {text: value} whose values pass a door; TypeError names what does not."""
+    """Check a {text: value} whose values pass a door; TypeError names what does not."""
     if not isinstance(values, Mapping):
         raise TypeError(f"{name} must be a {{name: …}}, not {shown(values)}")
     for key, value in values.items():

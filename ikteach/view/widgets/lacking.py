@@ -1,6 +1,6 @@
-"""What a front end may lack, told in the cell where the figure would be, with what mends it.
+"""Sentences on what a front end lacks, and how to mend it, where the figure would be.
 
-Three who may tell it, by how far the page comes: the driver (driver.js), if the page has anywidget;
+Three may say it, by how far the page comes: the driver (driver.js), if the page has anywidget;
 a `Note` under the figure, if it has ipywidgets; else the output of the cell as HTML.
 """
 
@@ -55,7 +55,7 @@ class Note:
 
 
 def in_place_of(still: Still) -> Markup:
-    """The picture and why it does not move."""
+    """Show the picture, and say why it does not move."""
     box = (
         '<div class="ikteach-still" style="line-height:1.4"><p style="border-left:4px solid '
         '#d55e00;padding:4px 10px;margin:4px 0">{}</p>{}</div>'

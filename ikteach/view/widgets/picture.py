@@ -1,10 +1,14 @@
 """A picture made in the kernel, with words for those who cannot see it."""
 
 import base64
+import io
 from dataclasses import dataclass, field
+from typing import Any
 
 import anywidget
 import traitlets
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from ikteach.markup import Markup
 from ikteach.view.widgets.closing import Living
@@ -31,3 +35,24 @@ class Still:
         return Markup(
             '<img alt="{}" style="max-width:100%" src="data:image/png;base64,{}">'
         ).format(self.alt, data)
+
+
+def png_of(figure: Figure) -> bytes:
+    """Draw a figure of matplotlib as PNG."""
+    out = io.BytesIO()
+    figure.savefig(out, format="png")
+    return out.getvalue()
+
+
+def as_png(pixels: NDArray[Any], colours: int | None = None) -> bytes:
+    """Write RGB or RGBA pixels (h, w, 3 or 4) as PNG.
+
+    colours  of a palette: with 48 of them the file takes a third of the bytes and half of the time
+    """
+    from PIL import Image  # comes with matplotlib
+
+    image, out = Image.fromarray(pixels[..., :3]), io.BytesIO()
+    if colours is not None:
+        image = image.quantize(colours, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    image.save(out, "PNG", compress_level=1)
+    return out.getvalue()

@@ -20,13 +20,13 @@ class Prose(Living, widgets.HTML):  # type: ignore[misc]
 
 
 def table(frame: pd.DataFrame, decimals: str, *, kind: str = "ikteach-table") -> Markup:
-    """The numbers of a table, each in the format `decimals`, with its rows and columns named."""
+    """Write a table as HTML, each number in the format `decimals`."""
     shown = frame.rename(index=_plain, columns=_plain)
     return Markup(shown.to_html(float_format=decimals.format, na_rep="–", border=0, classes=kind))
 
 
 def grid(heads: Sequence[object], rows: Iterable[Sequence[object]], title: str = "") -> Markup:
-    """Rows of words, as a table whose first column names them."""
+    """Write rows of words as a table whose first column names them."""
     head, first, cell = map(Markup, ("<th>{}</th>", '<th scope="row">{}</th>', "<td>{}</td>"))
     nothing = Markup()
     body = nothing.join(

@@ -1,4 +1,4 @@
-"""What goes on, in words: a line that screen readers read out when it changes."""
+"""A line on what goes on, which screen readers read out when it changes."""
 
 import anywidget
 import traitlets

@@ -16,7 +16,8 @@ from ikteach.view.chapters.gait import GaitPlayer
 from ikteach.view.chapters.pseudoinverse import CapPlayer
 from ikteach.view.chapters.sdls import spectrum_bench
 from ikteach.view.chapters.transpose import slope_bench
-from ikteach.view.live.bench import Bench, Shown, slider
+from ikteach.view.live.bench import Bench, Shown
+from ikteach.view.live.panel import slider
 from ikteach.view.widgets.closing import occupant
 
 BENCHES = [slope_bench, tradeoff_bench, spectrum_bench]
@@ -88,11 +89,13 @@ def test_the_arm_steps_downhill_and_starts_again() -> None:
 @pytest.mark.parametrize("make", [CapPlayer, Race])
 def test_every_control_of_a_player_to_both_ends(make: Any) -> None:
     player = make()
+    figure = getattr(player, "player", player)
     for control in player.controls.values():
         before = control.value
         for end in ends(control):
             control.value = end
-            player.refresh()
+            figure.session.tick()
+            figure.report()
             assert player.status.wrong == ""
             assert len(player.words) > 20
         control.value = before

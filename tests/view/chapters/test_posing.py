@@ -11,7 +11,7 @@ from PIL import Image
 from ikteach import figures, forward, jacobian
 from ikteach.body.partials import by_differences
 from ikteach.view import BendBench, ColumnPoser, Poser
-from ikteach.view.heat import heat
+from ikteach.view.charts import heat
 
 MAKERS = {
     "human": lambda: Poser(figures.human()),

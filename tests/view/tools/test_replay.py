@@ -65,7 +65,7 @@ def test_all_ways_to_a_tick_are_one(log):
         assert_array_equal(theta, log.theta[tick, log.shown[tick]])
         assert_array_equal(targets, log.targets[tick])
         assert (floor, advance) == (log.floor[tick], log.advance[tick])
-        assert f"Tick {log.tick[tick]}, {log.clock[tick]:.2f} s" in replay.words.said
+        assert f"Tick {log.tick[tick]}, {log.clock[tick]:.2f} s" in replay.status.said
     with pytest.raises(IndexError, match="rows 0 to 11, not 12"):
         replay.go(12)
     replay.close()
@@ -77,7 +77,7 @@ def test_another_method_can_be_seen(log):
     replay.go(4)
     replay.method.value = "transpose"
     assert_array_equal(scene.seen[-1][0], log.theta[4, 0])
-    assert "by transpose" in replay.words.said
+    assert "by transpose" in replay.status.said
     assert {row[2] for row in replay.rows.rows} == {"transpose"}
     replay.method.value = AS_SHOWN
     assert [row[2] for row in replay.rows.rows] == ["dls"] * 6 + ["sdls"] * 6
@@ -158,7 +158,7 @@ def test_nothing_to_replay_and_no_loop(log):
         Replay(Session().log())
     replay = Replay(log, Watcher())
     replay.playing.value = True
-    assert "in a notebook only" in replay.words.wrong
+    assert "in a notebook only" in replay.status.wrong
 
 
 def test_one_tick_is_a_run():
@@ -186,13 +186,13 @@ def test_what_goes_wrong_is_told_and_the_replay_goes_on(log):
         for tick, ask in enumerate(asks, start=1):
             scene.wrong = True
             ask()
-            await until(lambda: replay.words.wrong == "That did not work: no picture")
+            await until(lambda: replay.status.wrong == "That did not work: no picture")
             await until(lambda: not replay.playing.value)
             scene.wrong = False
             replay.go(tick)
-            await until(lambda tick=tick: replay.at == tick and replay.words.wrong == "")
+            await until(lambda tick=tick: replay.at == tick and replay.status.wrong == "")
         replay.rows.chosen = 99
-        assert replay.words.wrong == "That did not work: the log has rows 0 to 11, not 99"
+        assert replay.status.wrong == "That did not work: the log has rows 0 to 11, not 99"
         replay.close()
 
     asyncio.run(story())

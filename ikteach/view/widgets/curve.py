@@ -1,4 +1,4 @@
-"""A plot and a table in which one thing is chosen, by pointing or with the keyboard."""
+"""A plot in which one place is chosen, by pointing or with the keyboard."""
 
 from typing import Any
 
@@ -25,16 +25,4 @@ class Curve(Living, anywidget.AnyWidget):
     span = traitlets.List([0.0, 1.0]).tag(sync=True)
     places: Any = traitlets.List().tag(sync=True)
     labels: Any = traitlets.List().tag(sync=True)
-    chosen = traitlets.Int(0).tag(sync=True)
-
-
-class Rows(Living, anywidget.AnyWidget):
-    """A table whose rows can be chosen with a click or the arrow keys.
-
-    header, rows  words; chosen: the number of the chosen row
-    """
-
-    _esm, _css = script("view/widgets/table.js"), style("view/widgets/table.css")
-    header: Any = traitlets.List().tag(sync=True)
-    rows: Any = traitlets.List().tag(sync=True)
     chosen = traitlets.Int(0).tag(sync=True)

@@ -1,0 +1,96 @@
+"""A run as a plot, in words, and as a table."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from ikteach.arrays import Array, Index
+from ikteach.motion.live.log import Log
+from ikteach.view import charts
+from ikteach.view.stage.lengths import Lengths, decade
+from ikteach.view.widgets.picture import png_of
+
+
+def error_picture(run: Log, error: Array) -> tuple[bytes, list[float]]:
+    """Draw the distances (T, k) over the clock; PNG, and where its axis lies: left and right, 0..1.
+
+    A triangle above the axes is a change.
+    """
+    figure = Figure(figsize=(9, 2.5), dpi=100, layout="constrained")
+    canvas = FigureCanvasAgg(figure)
+    axes = figure.subplots()
+    least = charts.LEAST * decade(run.tree, run.effectors)
+    names = run.effectors.names
+    charts.draw_distances(axes, run.clock, dict(zip(names, error.T, strict=True)), least)
+    changes = [event.tick * run.dt for event in run.events if event.run == _last_run(run)]
+    changes = [at for at in changes if run.clock[0] <= at <= run.clock[-1]]
+    if changes:
+        look: Any = {"color": "0.25", "transform": axes.get_xaxis_transform(), "clip_on": False}
+        axes.plot(changes, np.ones(len(changes)), "v", label="change", **look)
+    last = run.clock[-1] if len(run) > 1 else run.clock[0] + run.dt
+    axes.set(xlim=(run.clock[0], last), xlabel="clock [s]", ylabel="distance to target [m]")
+    figure.legend(loc="outside upper center", ncols=6, fontsize=8, handlelength=2.6, frameon=False)
+    canvas.draw()
+    box = axes.get_position()
+    return png_of(figure), [float(box.x0), float(box.x1)]
+
+
+def error_words(run: Log, error: Array) -> str:
+    """Say in words what the plot shows."""
+    length = length_of(run)
+    each = "; ".join(
+        f"{name} {length(one.mean())} on average, at most {length(one.max())} at "
+        f"{run.clock[one.argmax()]:.2f} s"
+        for name, one in zip(run.effectors.names, error.T, strict=True)
+    )
+    return f"Distance to target from {run.clock[0]:.2f} to {run.clock[-1]:.2f} s: {each}."
+
+
+def length_of(run: Log) -> Lengths:
+    """Give the unit in which distances of the run are read."""
+    return Lengths.of(run.tree, run.effectors)
+
+
+def _last_run(run: Log) -> int:
+    """Find the run of the ticks of this log: no reset came after it."""
+    return max((event.run + (event.kind == "reset") for event in run.events), default=0)
+
+
+def places(clock: Array) -> list[float]:
+    """Where each tick lies on the axis, 0..1."""
+    span = max(clock[-1] - clock[0], 1e-9)
+    return ((clock - clock[0]) / span).tolist()
+
+
+def error_rows(run: Log, columns: Index, error: Array) -> list[list[str]]:
+    """Write a row per tick: its number, clock, method, distances (T, k), and what changed.
+
+    columns  (T,) the number of the method
+    """
+    changed: dict[int, list[str]] = {}
+    for event in run.events:
+        if event.run == _last_run(run):
+            changed.setdefault(event.tick, []).append(str(event))
+    notes, length = _at_rows(run, changed), length_of(run)
+    return [
+        [
+            str(run.tick[t]),
+            f"{run.clock[t]:.2f}",
+            run.methods[columns[t]],
+            *(length.number(d, 2) for d in error[t]),
+            "; ".join(notes.get(t, [])),
+        ]
+        for t in range(len(run))
+    ]
+
+
+def _at_rows(run: Log, changed: Mapping[int, list[str]]) -> dict[int, list[str]]:
+    """Find the row in which each change first acts: that of the next tick in the log."""
+    notes: dict[int, list[str]] = {}
+    for tick, words in changed.items():
+        row = int(np.searchsorted(run.tick, tick, side="right"))
+        notes.setdefault(min(row, len(run) - 1), []).extend(words)
+    return notes

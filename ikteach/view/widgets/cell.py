@@ -1,0 +1,65 @@
+"""The base of every figure and tool in a cell, whatever it shows."""
+
+from collections.abc import Callable
+from typing import Any
+
+import ipywidgets as widgets
+
+from ikteach.view.widgets.actor import Actor, attempt
+from ikteach.view.widgets.closing import Living
+from ikteach.view.widgets.lacking import Note
+from ikteach.view.widgets.picture import Still
+from ikteach.view.widgets.status import Status
+
+
+class Cell(Living, widgets.VBox):  # type: ignore[misc]
+    """A column of widgets: guarded callbacks, a line on what goes on, a still picture beside it.
+
+    slot    only one of a slot lives at a time: to run a cell again closes the older one
+    note    where the still picture stands, among the `children`; None: there is no such picture
+    status  says what goes on and what went wrong
+
+    A subclass makes its parts after `super().__init__`, and last puts them in place as `children`.
+    """
+
+    def __init__(self, slot: str | None, note: Note | None = None) -> None:
+        super().__init__()
+        self.slot, self.note, self.status = slot, note, Status()
+        self._act = Actor()
+
+    def still(self) -> Still | None:
+        """Draw it for a place without a kernel; None if there is nothing to see."""
+        return None
+
+    def acted(self) -> None:
+        """Go on after a guarded callback, whether it failed or not."""
+
+    def guarded(self, action: Callable[..., object]) -> Callable[..., None]:
+        """Wrap a callback: the notebook's loop does it, and `status` says what goes wrong.
+
+        Callbacks may come on another thread; the session, and all else, stays as it was.
+        """
+
+        def act(*arguments: Any) -> None:
+            self.attempt(lambda: action(*arguments))
+            self.acted()
+
+        return lambda *arguments: self._act(lambda: act(*arguments))
+
+    def attempt(self, action: Callable[[], object]) -> None:
+        """Do it now, and have `status` say what goes wrong; what was wrong is over."""
+        with self.status.hold_sync():
+            self.status.wrong = ""
+            attempt(action, self.status.fail)
+
+    def button(self, label: str, action: Callable[[], object], **look: Any) -> widgets.Button:
+        """Make a button that does this, guarded."""
+        made, act = widgets.Button(description=label, **look), self.guarded(action)
+        made.on_click(lambda _: act())
+        return made
+
+    def _repr_mimebundle_(self, **kwargs: Any) -> Any:
+        """Show the live widget, and beside it the still picture."""
+        bundle = super()._repr_mimebundle_(**kwargs)
+        still = self.still()
+        return bundle if still is None or self.note is None else self.note.beside(bundle, still)

@@ -1,0 +1,21 @@
+"""A table of which one row is chosen, by pointing or with the keyboard."""
+
+from typing import Any
+
+import anywidget
+import traitlets
+
+from ikteach.view.widgets.closing import Living
+from ikteach.view.widgets.page import script, style
+
+
+class Rows(Living, anywidget.AnyWidget):
+    """A table whose rows can be chosen with a click or the arrow keys.
+
+    header, rows  words; chosen: the number of the chosen row
+    """
+
+    _esm, _css = script("view/widgets/table.js"), style("view/widgets/table.css")
+    header: Any = traitlets.List().tag(sync=True)
+    rows: Any = traitlets.List().tag(sync=True)
+    chosen = traitlets.Int(0).tag(sync=True)
