@@ -11,6 +11,8 @@ Mask: TypeAlias = npt.NDArray[np.bool_]
 Index: TypeAlias = npt.NDArray[np.intp]
 ArrayLike: TypeAlias = npt.ArrayLike
 
+TINY = 1e-150  # keeps 0 / 0 away where a length is zero
+
 
 def frozen(values: ArrayLike, dtype: Any = float) -> Any:
     """Copy `values` into an array that cannot be written to."""
@@ -20,6 +22,6 @@ def frozen(values: ArrayLike, dtype: Any = float) -> Any:
 
 
 def finite(values: Array) -> bool:
-    """Find whether no number is infinite or NaN."""
+    """Check that no number is infinite or NaN."""
     # One product tells of most arrays; only where it is not finite must each number be looked at.
     return isfinite(np.vdot(values, values)) or bool(np.isfinite(values).all())

@@ -1,4 +1,4 @@
-"""What is refused at the doors: one sentence each, the culprit's name and what is allowed."""
+"""Refusals at the doors: one sentence each, with the culprit's name and the values allowed."""
 
 from collections.abc import Callable
 from math import isfinite
@@ -14,7 +14,10 @@ LONG = 80  # letters of a value that a sentence shows
 
 
 def numbers(name: str, values: ArrayLike) -> Array:
-    """Make an array of floats of anything that is made of real numbers; ValueError names it."""
+    """Make an array of floats of real numbers.
+
+    Whatever is made of real numbers is taken; ValueError names the values that are not.
+    """
     if type(values) is np.ndarray and values.dtype is FLOAT:  # the common case costs nothing
         return values
     try:
@@ -28,7 +31,10 @@ def numbers(name: str, values: ArrayLike) -> Array:
 
 
 def number(name: str, value: Any) -> float:
-    """Make a float of an option that is one number, 0 or more; ValueError names it."""
+    """Make a float of one number, 0 or more.
+
+    ValueError names the option that is none.
+    """
     if type(value) is float and 0 <= value < np.inf:
         return value
     if not isinstance(value, bool | np.bool_):  # a switch is no number
@@ -43,7 +49,10 @@ def number(name: str, value: Any) -> float:
 
 
 def count(name: str, value: Any, least: int = 1, most: float = np.inf) -> int:
-    """Make an int of a whole number such as 3, 3.0 or np.int64(3); ValueError names it."""
+    """Make an int of a whole number.
+
+    3, 3.0 and np.int64(3) are whole numbers; ValueError names the option that is none.
+    """
     is_number = isinstance(value, Real) and not isinstance(value, bool)
     if is_number and least <= value <= most and value % 1 == 0:  # of infinity that is NaN
         return int(value)
@@ -52,14 +61,17 @@ def count(name: str, value: Any, least: int = 1, most: float = np.inf) -> int:
 
 
 def function(name: str, value: Any) -> Callable[..., Any]:
-    """Give back a function; TypeError names what is none."""
+    """Return a function; TypeError names any other value."""
     if not callable(value):
         raise TypeError(f"{name} must be a function, not {shown(value)}")
     return value
 
 
 def system(J: Any, e: Any) -> tuple[Array, Array]:
-    """Make arrays of floats of J (..., m, n) and e (..., m); ValueError says what does not fit."""
+    """Make arrays of floats of J (..., m, n) and e (..., m).
+
+    ValueError says where they do not fit.
+    """
     common = type(J) is type(e) is np.ndarray and J.dtype is e.dtype is FLOAT
     if (
         common
@@ -72,7 +84,7 @@ def system(J: Any, e: Any) -> tuple[Array, Array]:
     if e.shape[-1:] != J.shape[-2:-1]:
         m = J.shape[-2]
         raise ValueError(f"a J of {m} rows needs e of shape (..., {m}), not {e.shape}")
-    together("J and e", J.shape[:-2], e.shape[:-1])
+    common_batch("J and e", J.shape[:-2], e.shape[:-1])
     if not finite(e):
         raise ValueError("e is not finite")
     return J, e
@@ -88,8 +100,11 @@ def matrix(J: ArrayLike) -> Array:
     return J
 
 
-def together(what: str, *batches: tuple[int, ...]) -> tuple[int, ...]:
-    """Find the batch that all of these fit into; ValueError says which they are."""
+def common_batch(what: str, *batches: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the batch that all of these fit into.
+
+    ValueError gives the batches that do not fit together.
+    """
     sizes = set(batches) - {()}
     if len(sizes) <= 1:  # the common case
         return sizes.pop() if sizes else ()
@@ -101,7 +116,10 @@ def together(what: str, *batches: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def shown(value: object) -> str:
-    """Show a value as a sentence has it: on one line, and not longer than that."""
+    """Show a value as a sentence has it.
+
+    It is on one line and has at most `LONG` letters.
+    """
     try:
         text = " ".join(repr(value).split())
     except Exception:  # a stranger's __repr__ may raise anything

@@ -1,6 +1,6 @@
 """Files, read and checked whole, written whole or not at all.
 
-Whoever reads a file of somebody else's learns in one bounded sentence what is wrong with it, before
+Whoever reads a file of somebody else's learns in one bounded sentence why it is unfit, before
 anything is made of it. Whoever writes one writes a draft, `.NAME.xxxxxxxx.part` in the same folder,
 which gets the name in one step: until then the old file is there, and from then on the new one.
 """
@@ -54,7 +54,7 @@ _short.maxlong = 40
 
 
 def quoted(value: Any) -> str:
-    """Give `repr(value)`, shortened to what fits into a sentence."""
+    """Give `repr(value)`, shortened to fit into a sentence."""
     try:
         return bounded(_short.repr(str(value) if isinstance(value, Path) else value), 200)
     except Exception:  # of an object whose repr fails, or a number of too many digits
@@ -167,8 +167,8 @@ def _check_sound(content: Any) -> None:
 def jsonable(value: Any) -> Any:
     """Make a value that every reader of JSON reads.
 
-    Without NaN, and in Python's own types. Arrays become lists, and what JSON does not know becomes
-    a text of at most 400 letters.
+    Without NaN, and in Python's own types. Arrays become lists, and anything unknown to JSON
+    becomes a text of at most 400 letters.
     """
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
@@ -384,7 +384,7 @@ def _unlock(file: int) -> None:
 class _Watch:
     """Makes a file that only one can make, and removes one that was left behind by a kill.
 
-    That it was is told by its not changing while we look: the clocks of two machines may differ.
+    That it was is seen by its not changing while we look: the clocks of two machines may differ.
     """
 
     def __init__(self, made: Path) -> None:

@@ -1,4 +1,4 @@
-"""Text that becomes HTML: what names and files say is escaped here, and nowhere else."""
+"""Text that becomes HTML: the words of names and files are escaped here, and nowhere else."""
 
 import html
 import re
@@ -37,7 +37,7 @@ def escaped(text: object) -> Markup:
 
 
 def visible(text: str) -> str:
-    """Put text on one line, without what cannot be seen."""
+    """Put text on one line, without invisible characters."""
     return _UNSEEN.sub(" ", text)
 
 
@@ -50,7 +50,7 @@ def brief(text: str, most: int = LONGEST) -> str:
 def plain(text: str) -> str:
     """Make a label for ipywidgets.
 
-    They would set what looks like TeX as a formula.
+    They would set text that looks like TeX as a formula.
     """
     return brief(text).translate(_LOOK_ALIKE)
 

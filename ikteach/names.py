@@ -9,7 +9,10 @@ MANY = 12  # names that a sentence lists
 
 
 def unknown(kind: str, name: object, known: Iterable[str]) -> str:
-    """Say that there is no `kind` called `name`, and what it may have meant or what there is."""
+    """Say that no `kind` is called `name`.
+
+    The sentence goes on with the name that may have been meant, or with all that there are.
+    """
     names = list(known)
     close = difflib.get_close_matches(name[:LONG] if isinstance(name, str) else shown(name), names)
     if close:

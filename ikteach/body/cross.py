@@ -12,17 +12,26 @@ YZXY = np.array([1, 2, 0, 1])
 
 
 def across_joints(vectors: Array) -> Array:
-    """Lay one vector per joint (..., n, 3) side by side: (..., 1, 4, n), in the order YZXY."""
+    """Lay one vector per joint side by side.
+
+    (..., n, 3) to (..., 1, 4, n), in the order YZXY.
+    """
     return vectors.mT.take(YZXY, axis=-2)[..., None, :, :]
 
 
 def down_effectors(points: Array) -> Array:
-    """Lay one point per effector (..., k, 3) below each other: (..., k, 4, 1), in order YZXY."""
+    """Lay one point per effector below each other.
+
+    (..., k, 3) to (..., k, 4, 1), in the order YZXY.
+    """
     return points.take(YZXY, axis=-1)[..., None]
 
 
 def cross(a: Array, b: Array) -> Array:
-    """Multiply a × b of vectors in columns in the order YZXY: (..., 4, n) to (..., 3, n) in XYZ."""
+    """Multiply a × b of vectors in columns.
+
+    (..., 4, n) in the order YZXY to (..., 3, n) in the order XYZ.
+    """
     product = a[..., :3, :] * b[..., 1:, :]
     product -= a[..., 1:, :] * b[..., :3, :]
     return product

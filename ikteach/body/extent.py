@@ -23,10 +23,11 @@ class Extent(NamedTuple):
 
 @lru_cache(maxsize=32)
 def extent(tree: Tree, effectors: Effectors) -> Extent:
-    """Enclose whatever joints and effectors can come to, travel of slides included.
+    """Enclose all places that joints and effectors can reach.
 
-    A slide without a limit is taken to go as far that way as the body is large without it. The
-    ball moves along with the ground, and grows with the unit of length.
+    The travel of slides is included. A slide without a limit is taken to go as far that way as the
+    body is large without it. The ball moves along with the ground, and grows with the unit of
+    length.
     """
     endless = tree.slide & np.isinf([tree.lower, tree.upper])
     lower, upper = np.where(np.isinf([tree.lower, tree.upper]), tree.rest, [tree.lower, tree.upper])

@@ -44,9 +44,10 @@ def planar_arm(links: int | Sequence[float] = 3) -> Figure:
 
 
 def y_shape() -> Figure:
-    """Buss's Y: a trunk and two arms of three hinges each, 7 joints and 2 effectors.
+    """Make Buss's Y, 7 joints and 2 effectors.
 
-    Without limits: his code writes ±π in every joint and asks for it nowhere.
+    It has a trunk and two arms of three hinges each. There are no limits: his code writes ±π in
+    every joint and asks for it nowhere.
     """
     rows = [  # name, parent, place in the world at θ = 0, axis
         ("trunk", None, (0, -0.5, 0), Z),
@@ -61,7 +62,10 @@ def y_shape() -> Figure:
 
 
 def double_y() -> Figure:
-    """Buss's double Y: a trunk, two boughs and four branches, 25 joints and 4 effectors."""
+    """Make Buss's double Y, 25 joints and 4 effectors.
+
+    It has a trunk, two boughs and four branches.
+    """
     fork, flat, steep = 0.5 / sqrt(2), 0.25, 0.25 * sqrt(3)
     rows: list[tuple[str, str | None, Vector, Vector]] = [
         ("trunk.1", None, (0, -1.5, 0), TILTED),
@@ -76,7 +80,7 @@ def double_y() -> Figure:
             name = f"{side}.{branch}"
 
             def place(links: int, x: int = x, rise: float = rise) -> Vector:
-                """Find the point that is `links` links along the branch."""
+                """Return the point that is `links` links along the branch."""
                 return (x * (fork + links * steep), -0.5 + fork + links * rise, 0)
 
             rows += [
@@ -91,7 +95,9 @@ def double_y() -> Figure:
 
 
 def human() -> Figure:
-    """Make a human of 1.80 m with 20 hinges, pelvis at the origin, x left, y up, z forward.
+    """Make a human of 1.80 m with 20 hinges.
+
+    The pelvis is at the origin, x points left, y up, z forward.
 
     Two hinges in the spine, four in each arm, five in each leg; the effectors are the balls of the
     feet and the hands, in the order of the thesis. Lengths are shares of the body's height after
@@ -113,7 +119,7 @@ def human() -> Figure:
 
 
 def heels(tree: Tree) -> Effectors:
-    """Find the heels of `human().tree`, for footprints: they reach for nothing."""
+    """Return the heels of `human().tree`, for footprints: they reach for nothing."""
     heel = (0, -0.0702, -0.0684)
     return Effectors.of(tree, {f"heel.{side}": (f"ankle.{side}", heel) for side in "lr"})
 
@@ -124,7 +130,9 @@ TOGETHER = (("back.lower", "back.upper"),)
 
 
 def simulator() -> Figure:
-    """Make the figure of CS 490: 16 degrees of motion in 17 hinges, pelvis at the origin.
+    """Make the figure of CS 490.
+
+    It has 16 degrees of motion in 17 hinges, and its pelvis is at the origin.
 
     Each shoulder has two hinges (about y, which swings the arm round, then about x, which raises
     it), each elbow, knee and ankle one, each hip two, the neck one, which nods. The back has two
@@ -148,10 +156,10 @@ def simulator() -> Figure:
 
 
 def planar_model(links: int = 3) -> Figure:
-    """Make the earlier stage of CS 490: an arm in the plane with limits, of at most three links.
+    """Make a planar arm of one to three links.
 
-    They are 0.5, 0.4 and 0.3 m long; the effector "hand" is at the end of the last.
-    ValueError for another number of links.
+    The earlier stage of CS 490, with limits. The links are 0.5, 0.4 and 0.3 m long; the effector
+    "hand" is at the end of the last. ValueError for another number of links.
     """
     lengths, limits, rest = (0.5, 0.4, 0.3), (180, 150, 120), (60, -60, -45)
     try:

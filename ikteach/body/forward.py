@@ -31,7 +31,7 @@ class Frames(NamedTuple):
 
 
 def forward(tree: Tree, theta: ArrayLike) -> Frames:
-    """Find the frames of all joints at pose θ (..., n) [rad, or m for slides].
+    """Return the frames of all joints at pose θ (..., n) [rad, or m for slides].
 
     Each step of the climb joins all joints of one depth to their parents by one stacked product,
     a batch of poses with them (`body.plan`).
@@ -47,15 +47,18 @@ def forward(tree: Tree, theta: ArrayLike) -> Frames:
 
 
 def locate(frames: Frames, effectors: Effectors) -> Array:
-    """Find the positions s_i = p_j + R_j offset_i of the effectors, (..., k, 3) [m]."""
-    fits(effectors, frames)
+    """Return the positions s_i = p_j + R_j offset_i of the effectors, (..., k, 3) [m]."""
+    check_frames(effectors, frames)
     p = frames.positions.take(effectors.joints, axis=-2)
     R = frames.orientations.take(effectors.joints, axis=-3)
     return p + np.matvec(R, effectors.offsets)
 
 
 def pose(tree: Tree, theta: ArrayLike) -> Array:
-    """Make an array of θ (..., n), if it is a pose of this tree; ValueError if not."""
+    """Check that θ (..., n) is a pose of this tree.
+
+    Return it as an array; ValueError if it is none.
+    """
     if not isinstance(tree, Tree):
         raise TypeError(f"a Tree is needed here, not {shown(tree)}")
     theta, n = numbers("theta", theta), len(tree)
@@ -67,7 +70,7 @@ def pose(tree: Tree, theta: ArrayLike) -> Array:
     return theta
 
 
-def fits(effectors: Effectors, frames: Frames) -> None:
+def check_frames(effectors: Effectors, frames: Frames) -> None:
     """Refuse frames that are not of a body of these effectors."""
     if not isinstance(effectors, Effectors):
         raise TypeError(f"Effectors are needed here, not {shown(effectors)}")

@@ -4,15 +4,15 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike
 from ikteach.body.cross import across_joints, cross, down_effectors
-from ikteach.body.forward import Frames, fits, locate
+from ikteach.body.forward import Frames, check_frames, locate
 from ikteach.body.tree import Effectors, Tree
-from ikteach.checks import numbers, together
+from ikteach.checks import common_batch, numbers
 
 
 def jacobian(
     tree: Tree, frames: Frames, effectors: Effectors, *, at: ArrayLike | None = None
 ) -> Array:
-    """Find J (..., 3k, n) [m/rad; 1 for slides]: row 3i + c is coordinate c of effector i.
+    """Return J (..., 3k, n) [m/rad; 1 for slides]: row 3i + c is coordinate c of effector i.
 
     The column of a hinge j that carries effector i is v_j × (s_i − p_j), of a slide v_j, and zero
     where j does not carry i. `at` (..., k, 3) [m] puts other points in place of the s_i: with the
@@ -33,10 +33,10 @@ def jacobian(
 
 def _points(frames: Frames, effectors: Effectors, at: ArrayLike) -> Array:
     """Make an array of one point per effector, (..., k, 3)."""
-    fits(effectors, frames)
+    check_frames(effectors, frames)
     at, k = numbers("at", at), len(effectors)
     if at.shape[-2:] != (k, 3):
         raise ValueError(f"at needs a point per effector, (..., {k}, 3), not the shape {at.shape}")
     if at.ndim != 2 != frames.positions.ndim:
-        together("frames and at", frames.positions.shape[:-2], at.shape[:-2])
+        common_batch("frames and at", frames.positions.shape[:-2], at.shape[:-2])
     return at

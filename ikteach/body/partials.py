@@ -8,7 +8,9 @@ from ikteach.body.tree import Effectors, Tree
 
 
 def by_hand(theta: ArrayLike, lengths: ArrayLike) -> Array:
-    """J (..., 2, n) [m/rad] of a planar arm, its partial derivatives written out as in CS 490.
+    """Write out the Jacobian of a planar arm.
+
+    J (..., 2, n) [m/rad], its partial derivatives as in CS 490.
 
     With φ_i = θ_1 + … + θ_i the hand is at x = Σ l_i cos φ_i, y = Σ l_i sin φ_i, so that
 
@@ -22,7 +24,7 @@ def by_hand(theta: ArrayLike, lengths: ArrayLike) -> Array:
 
 
 def by_differences(tree: Tree, theta: ArrayLike, effectors: Effectors, *, h: float = 1e-6) -> Array:
-    """J (..., 3k, n) from central differences (s(θ + h) − s(θ − h)) / 2h, one joint at a time.
+    """Return J (..., 3k, n) from central differences (s(θ + h) − s(θ − h)) / 2h, joint by joint.
 
     theta (..., n), h [rad]. It needs no formula, and is as wrong as h is large: by O(h²).
     ValueError unless h is more than 0.

@@ -1,6 +1,6 @@
 """The table of joints in the order in which `forward` climbs it, worked out once per tree.
 
-What θ does not change stands in here: which joint follows which, and the entries of Rodrigues'
+All that θ does not change stands in here: which joint follows which, and the entries of Rodrigues'
 formula, all of which are sums of 1, sin θ and cos θ (and θ, for slides).
 """
 
@@ -65,7 +65,7 @@ class Plan:
         return np.vecmat(x, self.coefficients).reshape(*theta.shape, 4, 5)
 
     def climb(self, T: Array) -> Iterator[tuple[Array, Array]]:
-        """Yield, round by round, joints of T and the [R p; 0 1] that they are joined to.
+        """Yield joints of T and their parents' [R p; 0 1], by rounds.
 
         The first are views, to be written to before the next round.
         """

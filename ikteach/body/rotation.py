@@ -2,19 +2,18 @@
 
 import numpy as np
 
-from ikteach.arrays import Array
+from ikteach.arrays import TINY, Array
 
-TINY = 1e-150  # keeps 0 / 0 away where start and end are one
 EY = np.array([0.0, 1, 0])
 
 
 def transforms(orientations: Array, positions: Array) -> Array:
-    """R (..., 3, 3) and p (..., 3) as one 3 × 4 matrix [R | p], (..., 3, 4)."""
+    """Join R (..., 3, 3) and p (..., 3) into [R | p], (..., 3, 4)."""
     return np.concatenate([orientations, positions[..., None]], axis=-1)
 
 
 def sticks(start: Array, end: Array) -> Array:
-    """[R | p] (..., 3, 4) that lays the segment from (0, 0, 0) to (0, 1, 0) along start → end.
+    """Return [R | p] (..., 3, 4) that lays (0, 0, 0) to (0, 1, 0) along start → end.
 
     The second column of R is end − start, so that R also stretches; the others have length 1.
     They are those of the mirror that takes e = (0, 1, 0) to ∓y, y being the segment's direction:

@@ -22,9 +22,11 @@ GROUND = -1
 
 @dataclass(frozen=True)
 class Joint:
-    """One degree of freedom: a hinge that turns about `axis`, or a slide that moves along it.
+    """One degree of freedom: a hinge or a slide.
 
-    name      what errors and tables call it
+    A hinge turns about `axis`, a slide moves along it.
+
+    name      its name in errors and tables
     parent    the name of the joint it hangs from, or None for the ground
     offset    (3,) where it sits in the parent's frame [m]
     axis      (3,) direction in the parent's frame; any length but zero
@@ -47,7 +49,9 @@ class Joint:
 
 @dataclass(frozen=True, eq=False)
 class Tree:
-    """A body of n one-axis joints, parents before children. Its arrays cannot be written to.
+    """A body of n one-axis joints, parents before children.
+
+    Its arrays cannot be written to.
 
     names               n names
     parents   (n,)      index of the parent, GROUND (-1) for none
@@ -70,7 +74,10 @@ class Tree:
 
     @classmethod
     def of(cls, joints: Iterable[Joint]) -> "Tree":
-        """Make the tree of these rows; ValueError or LookupError names the row that is wrong."""
+        """Make the tree of these rows.
+
+        ValueError or LookupError names the row that is wrong.
+        """
         if not isinstance(joints, Iterable):
             raise TypeError(f"a tree is made of Joints, not of {shown(joints)}")
         rows = list(joints)
@@ -113,14 +120,14 @@ class Tree:
         return len(self.names)
 
     def index(self, name: str) -> int:
-        """Find the row of the joint called `name`; LookupError suggests another."""
+        """Return the row of the joint called `name`; LookupError suggests another."""
         try:
             return self.names.index(name)
         except ValueError:
             raise LookupError(unknown("joint", name, self.names)) from None
 
     def wrapped(self, theta: ArrayLike) -> Array:
-        """θ (..., n) as a person reads it: hinges without limits from −π to π [rad].
+        """Write θ (..., n) as a person reads it: endless hinges from −π to π [rad].
 
         Whole turns change nothing of where such a body is. Hinges with limits and slides stay.
         """
@@ -129,7 +136,10 @@ class Tree:
         return np.where(free, (theta + np.pi) % (2 * np.pi) - np.pi, theta)
 
     def above(self, joint: int) -> list[int]:
-        """Find the joint and all it hangs from, up to the ground."""
+        """Return a joint and all that it hangs from.
+
+        The chain goes up to the ground.
+        """
         chain = []
         while joint != GROUND:
             chain.append(joint)
@@ -139,7 +149,9 @@ class Tree:
 
 @dataclass(frozen=True, eq=False)
 class Effectors:
-    """k points of the body that are to reach targets, each fixed to some joint.
+    """The k points of a body that reach for targets.
+
+    Each is fixed to some joint.
 
     names             k names
     joints   (k,)     the joint that carries each of them

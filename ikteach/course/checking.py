@@ -147,7 +147,7 @@ def check(key: str, answer: Any, *, strict: bool = False) -> Verdict:
 
 
 def find(key: str) -> Exercise:
-    """Find the exercise of that key, or raise LookupError."""
+    """Return the exercise of that key, or raise LookupError."""
     module = f"ikteach.course.exercises.ch{str(key).partition('.')[0]}"
     try:
         importlib.import_module(module)
@@ -197,7 +197,7 @@ def _name(answer: Any, other: str) -> str:
 class Answer:
     """A student's function as a checker sees it.
 
-    It returns what it must or raises WrongError.
+    It returns a value of the form it must have, or raises WrongError.
 
     call   the last call, as text for sentences
     """
@@ -230,7 +230,7 @@ class Answer:
         return of_form(result, wanted, f"`{self.call}` returned")
 
     def error(self, *arguments: Any) -> Exception | None:
-        """Give what the function raises, or None if it returns."""
+        """Return the error that the function raises, or None."""
         self.call = f"{self.name}({', '.join(map(_brief, arguments))})"
         try:
             result = self._run(copy.deepcopy(arguments))

@@ -13,7 +13,7 @@ LOOK = {"good": ("✓", "#009e73"), "bad": ("✗", "#d55e00"), "plain": ("→", 
 
 @dataclass(frozen=True)
 class Notice:
-    """One sentence, and what it is about; false if that is bad."""
+    """One sentence and its mood, false if that is bad."""
 
     sentence: str
     mood: Mood = "plain"
@@ -42,7 +42,10 @@ def box(mood: Mood, content: Markup) -> Markup:
 
 
 def paragraph(text: str) -> Markup:
-    """Write the text as HTML; `code` in backquotes is set as such."""
+    """Write the text as HTML.
+
+    `code` in backquotes is set as such.
+    """
     parts, code = text.split("`"), Markup("<code>{}</code>")
     if len(parts) % 2 == 0:
         return escaped(text)

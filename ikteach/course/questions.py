@@ -30,10 +30,12 @@ def predict(
     ranking: bool = False,
     explain: str | None = None,
 ) -> "Question":
-    """Ask before the code runs; make it the last line of its cell.
+    """Ask before the code runs.
+
+    Make it the last line of its cell.
 
     key      chapter and name, such as "03.half-alpha"
-    options  what there is to choose from, or to put in order if `ranking`
+    options  to choose from, or to put in order if `ranking`
     numbers  (low, high, unit) for a number in place of options
     explain  a sentence under the question
     The answer is stored when it is locked in, and may be changed until `reveal` shows the result.
@@ -61,7 +63,7 @@ def predict(
     )
     if fits(known.get("answer"), kind, options, numbers):
         shown.answer = known["answer"]
-        shown.status = f"Your prediction: {words(known['answer'])}."
+        shown.status = f"Your prediction: {written(known['answer'])}."
         shown.locked = "result" in known
         shown.status += LOCKED if shown.locked else CHANGE
     return shown
@@ -74,7 +76,7 @@ def _choices(key: str, options: Sequence[str]) -> list[str]:
     """Check the options, as a list; TypeError or ValueError says what is wrong."""
     from ikteach.view.widgets import doors
 
-    choices = doors.words(f"the options of {key!r}", options)
+    choices = doors.texts(f"the options of {key!r}", options)
     if len(set(choices)) < max(2, len(choices)):
         raise ValueError(
             f"{key!r} needs options to choose from, two or more that differ, or "
@@ -103,7 +105,7 @@ LOCKED = " It is locked: the result has been shown."
 def fits(
     answer: Any, kind: str, options: Sequence[str], numbers: tuple[float, float, str] | None
 ) -> bool:
-    """Whether a stored answer is one that this question can have."""
+    """Tell whether this question can have a stored answer."""
     if kind == "number":
         assert numbers is not None
         real = isinstance(answer, Real) and not isinstance(answer, bool)
@@ -116,11 +118,11 @@ def fits(
 def _store(key: str, answer: Any) -> str:
     known = record.entry("predictions", key)
     if "result" in known and known.get("answer") is not None:
-        return f"Your prediction: {words(known['answer'])}.{LOCKED}"
+        return f"Your prediction: {written(known['answer'])}.{LOCKED}"
     late = "result" in known
     trouble = record.store("predictions", key, answer=answer, **({"late": True} if late else {}))
     after = " The result was shown before." if late else CHANGE
-    return f"Your prediction: {words(answer)}.{after} {trouble}".strip()
+    return f"Your prediction: {written(answer)}.{after} {trouble}".strip()
 
 
 @dataclass(frozen=True)
@@ -135,17 +137,20 @@ class Revealed:
 
     @property
     def right(self) -> bool | None:
-        """Whether they agree; None for numbers, where it is a matter of how near."""
+        """Whether prediction and result agree.
+
+        None without a prediction, and for numbers, where it is a matter of how near.
+        """
         if self.prediction is None or isinstance(self.result, int | float):
             return None
         return bool(self.prediction == self.result)
 
     def _lines(self) -> list[str]:
-        said = NOBODY if self.prediction is None else f"You predicted: {words(self.prediction)}."
+        said = NOBODY if self.prediction is None else f"You predicted: {written(self.prediction)}."
         lines = [said + (" (after the result was shown)" if self.late else "")]
-        lines.append(f"Computed: {words(self.result)}.")
+        lines.append(f"Computed: {written(self.result)}.")
         if self.right is None and isinstance(self.prediction, int | float):
-            lines.append(f"That is {words(abs(self.prediction - self.result))} away.")
+            lines.append(f"That is {written(abs(self.prediction - self.result))} away.")
         elif self.right is not None:
             lines.append("They agree." if self.right else "They differ.")
         return [*lines, *filter(None, [self.because, self.trouble])]
@@ -163,7 +168,7 @@ class Revealed:
 def reveal(key: str, answer: Any, because: str | None = None) -> Revealed:
     """Show the prediction `key` beside the computed `answer`, and lock it.
 
-    answer   what the notebook has computed: an option, a number, or an order
+    answer   the result that the notebook has computed: an option, a number, or an order
     because  a sentence on why
     A prediction that was not made stays open: the result is shown all the same.
     """
@@ -181,13 +186,15 @@ def _lock(key: str) -> None:
     shown = module.Question.living(key) if module else None
     if shown is not None and record.entry("predictions", key).get("answer") is not None:
         shown.locked = True
-        shown.status = f"Your prediction: {words(shown.answer)}.{LOCKED}"
+        shown.status = f"Your prediction: {written(shown.answer)}.{LOCKED}"
 
 
 def quiz(
     key: str, question: str, options: Sequence[str], right: str, why: str | Mapping[str, str]
 ) -> "Question":
-    """Ask an exit question; make it the last line of its cell.
+    """Ask an exit question.
+
+    Make it the last line of its cell.
 
     right  the right one of the options
     why    {option: a sentence} for the options, said when one is chosen; or one sentence for all
@@ -217,8 +224,8 @@ def quiz(
     return Question(f"quiz {key}", judge, question=question, options=list(options), button="Check")
 
 
-def words(value: Any) -> str:
+def written(value: Any) -> str:
     """Write an answer as a person does."""
     if isinstance(value, list):
-        return bounded(", then ".join(map(words, value)), 1000)
+        return bounded(", then ".join(map(written, value)), 1000)
     return f"{value:.4g}" if isinstance(value, float) else bounded(str(value), 1000)

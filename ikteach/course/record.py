@@ -32,7 +32,7 @@ _folder: Path | None = None
 
 
 def home() -> Path:
-    """Find the folder of the answers, the notebook's.
+    """Return the folder of the answers, the notebook's.
 
     It is the one in which the kernel was when it was first asked, wherever cells go later.
     """
@@ -83,7 +83,7 @@ def store(kind: str, key: str, *, again: bool = False, **fields: Any) -> str:
 def export(path: str | os.PathLike[str], log: Any = None, *, overwrite: bool = False) -> Notice:
     """Write all answers, and a `log`, to a JSON file.
 
-    A file that exists is left alone unless `overwrite`. Returns a sentence about what was done.
+    A file that exists is left alone unless `overwrite`. Returns a sentence about the outcome.
     `pandas.read_json(io.StringIO(json.dumps(file["log"])), orient="split")` gives the log back.
     """
     target = Path(path)

@@ -83,7 +83,7 @@ class Bounded(io.TextIOBase):
         self._to, self._left = to, PRINTED
 
     def write(self, text: str) -> int:
-        """Pass on what may still be printed; drop more."""
+        """Pass on as much as may be printed; drop more."""
         if self._left > 0 and self._to is not None:
             self._to.write(text[: self._left])
             self._left -= len(text)

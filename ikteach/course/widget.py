@@ -14,7 +14,9 @@ from ikteach.view.widgets.page import script, style
 
 
 class Question(Living, anywidget.AnyWidget):
-    """A question with choices, a number or an order to put things in (see question.js).
+    """A widget that asks for a choice, number or order (see question.js).
+
+    An order is one to put its options in.
 
     `on_answer` is called with each answer that is sent and gives the words to show under it. A
     second question of the same key closes the first: its cell was run again.
@@ -53,7 +55,10 @@ class Question(Living, anywidget.AnyWidget):
 
     @classmethod
     def living(cls, key: str) -> "Question | None":
-        """Find the question of this key that is on the page, if there is one."""
+        """Return the living question of this key, or None.
+
+        It lives while it is on the page.
+        """
         shown = occupant(f"question {key}")
         return shown if isinstance(shown, cls) else None
 

@@ -12,11 +12,13 @@ from ikteach.solvers.response import directions, response
 
 
 class Anatomy(NamedTuple):
-    """Everything about one tick, from error to movement. n joints, k effectors, r = min(3k, n).
+    """One tick, taken apart from error to movement.
+
+    n joints, k effectors, r = min(3k, n).
 
     method     the solver's name
     e          (3k,)      the error, shortened by max_error if there is one [m]
-    J          (3k, n)    what the solver is given: each column times its joint's mobility [m/rad]
+    J          (3k, n)    as the solver gets it: each column times its joint's mobility [m/rad]
     mobility   (n,)       s, so that wanted = s ∘ Σ f_i α_i v_i
     U          (3k, r)    its singular directions, as in `solvers.response.Directions`
     sigma      (r,)       singular values [m/rad]
@@ -25,7 +27,7 @@ class Anatomy(NamedTuple):
     responses  {name: (r,)}  f of each of `methods` [rad/m]; the solver's own among them
     wanted     (n,)       Δθ that the solver asks for [rad]
     capped     (n,)       after the cap [rad]
-    dtheta     (n,)       after the limits: what was done [rad]
+    dtheta     (n,)       after the limits, as it was done [rad]
     held       (n,)       True where a limit stopped the joint
     predicted  (k, 3)     JΔθ, how far the effectors were to move [m]
     actual     (k, 3)     how far they did move [m]
@@ -51,7 +53,10 @@ class Anatomy(NamedTuple):
 
     @property
     def filters(self) -> dict[str, Array]:
-        """σ f of each method (r,): the share of each direction's error that it takes away."""
+        """σ f of each method, (r,).
+
+        It is the share of each direction's error that the method takes away.
+        """
         return {name: self.sigma * f for name, f in self.responses.items()}
 
 

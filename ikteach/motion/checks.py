@@ -1,16 +1,19 @@
-"""What `step` and its like refuse: one sentence each, with the name of the culprit."""
+"""Refusals of `step` and its like: one sentence each, with the name of the culprit."""
 
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, finite
 from ikteach.body import Effectors, Frames, Tree, forward
-from ikteach.body.forward import fits, not_finite, pose
-from ikteach.checks import numbers, shown, together
+from ikteach.body.forward import check_frames, not_finite, pose
+from ikteach.checks import common_batch, numbers, shown
 from ikteach.solvers import SOLVERS, Solver
 
 
 def solver_of(solver: Solver | str) -> Solver:
-    """Get a solver by its name, or itself; LookupError for an unknown name."""
+    """Return a solver, given itself or its name.
+
+    LookupError for an unknown name.
+    """
     if isinstance(solver, str):
         return SOLVERS[solver]
     if not callable(solver):
@@ -21,9 +24,12 @@ def solver_of(solver: Solver | str) -> Solver:
 def checked(
     tree: Tree, theta: ArrayLike, effectors: Effectors, targets: ArrayLike
 ) -> tuple[Array, Array]:
-    """Make arrays of θ and targets, if shapes fit and numbers are finite."""
+    """Make arrays of θ and targets.
+
+    ValueError if shapes do not fit or a number is not finite.
+    """
     theta = pose(tree, theta)
-    fits(effectors, forward(tree, tree.rest))
+    check_frames(effectors, forward(tree, tree.rest))
     return theta, goals(effectors, targets)
 
 
@@ -41,7 +47,10 @@ def goals(effectors: Effectors, targets: ArrayLike) -> Array:
 
 
 def bound(name: str, bound: ArrayLike | None) -> Array | None:
-    """Make an array of a bound that is 0 or more, or None."""
+    """Make an array of a bound, 0 or more.
+
+    None, for no bound, stays None.
+    """
     if bound is None:
         return None
     array = numbers(name, bound)
@@ -63,7 +72,10 @@ def mobility_of(tree: Tree, mobility: ArrayLike) -> Array:
 
 
 def frames_of(tree: Tree, theta: ArrayLike, frames: Frames | None) -> Frames:
-    """Get the frames of a pose, or check those that are given for it."""
+    """Return the frames of a pose.
+
+    Frames that are given for it are checked.
+    """
     if frames is None:
         return forward(tree, theta)  # which checks θ
     if isinstance(frames, Frames) and frames.positions.shape != (*pose(tree, theta).shape, 3):
@@ -73,7 +85,10 @@ def frames_of(tree: Tree, theta: ArrayLike, frames: Frames | None) -> Frames:
 
 
 def error_bound(effectors: Effectors, max_error: ArrayLike | None) -> Array | None:
-    """Make an array of max_error, one number or (..., k), or None."""
+    """Make an array of max_error.
+
+    It is one number or (..., k) [m]; None, for no bound, stays None.
+    """
     array, k = bound("max_error", max_error), len(effectors)
     if array is not None and array.shape[-1:] not in ((), (1,), (k,)):
         raise ValueError(f"max_error needs one number, or (..., {k}), not {array.shape}")
@@ -83,7 +98,10 @@ def error_bound(effectors: Effectors, max_error: ArrayLike | None) -> Array | No
 def batch_of(
     theta: Array, targets: Array, free: Array, max_step: Array | None, max_error: Array | None
 ) -> tuple[int, ...]:
-    """Find the batch of all that is given; ValueError if its parts do not fit."""
+    """Return the batch of all that is given.
+
+    ValueError if its parts do not fit together.
+    """
     if max_step is None and max_error is None and theta.ndim == free.ndim == targets.ndim - 1 == 1:
         return ()  # one pose, the common case
     batches = [theta.shape[:-1], targets.shape[:-2], free.shape[:-1]]
@@ -91,4 +109,4 @@ def batch_of(
         batches.append(max_step.shape)
     if max_error is not None:
         batches.append(max_error.shape[:-1])
-    return together("theta, targets, mobility, max_step and max_error", *batches)
+    return common_batch("theta, targets, mobility, max_step and max_error", *batches)

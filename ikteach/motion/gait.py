@@ -20,7 +20,7 @@ import numpy as np
 from ikteach.arrays import Array, ArrayLike
 from ikteach.body import Effectors, Tree
 from ikteach.body.figures import human, simulator
-from ikteach.checks import count, number, numbers, shown, together
+from ikteach.checks import common_batch, count, number, numbers, shown
 from ikteach.motion.path import Course
 from ikteach.names import unknown
 
@@ -86,7 +86,7 @@ class Gait:
         return self.at(self.speed * numbers("T", T))
 
     def at(self, phase: ArrayLike) -> Array:
-        """Find the targets at sin(`phase`), phase (...) [rad], (..., 4, 3) [m]."""
+        """Return the targets at sin(`phase`), phase (...) [rad], (..., 4, 3) [m]."""
         phase = numbers("the phase", phase)
         if not np.isfinite(phase).all():
             raise ValueError("the phase of a gait must be finite")
@@ -99,10 +99,11 @@ class Gait:
         return targets
 
     def on(self, tree: Tree, effectors: Effectors) -> Course:
-        """Fit this gait to a body, in its size and from its pelvis.
+        """Fit this gait to a body.
 
-        A body with the limbs of a human in other proportions is given the lengths as they are.
-        ValueError if one of its effectors is no foot and no hand.
+        It goes by the body's size, from its pelvis. A body with the limbs of a human in other
+        proportions is given the lengths as they are. ValueError if one of its effectors is no foot
+        and no hand.
         """
         if strange := [name for name in effectors.names if name not in LIMBS]:
             raise ValueError(
@@ -120,34 +121,40 @@ class Gait:
         return Course(self.at if ours else at, float(pelvis[1] + unit * ground), unit)
 
     def clock(self, frames: int, dt: float = 1 / 30) -> Array:
-        """Find the gait time T at the end of each tick, (frames,) [s]."""
+        """Return the gait time T at the end of each tick, (frames,) [s]."""
         leaps = np.arange(1.0, count("frames", frames, least=0) + 1) // self.slowdown
         return self.step_frequency * number("dt", dt) * self.slowdown * leaps
 
     @property
     def period(self) -> float:
-        """Gait time of one cycle, two steps [s]; infinite if nothing swings."""
+        """Gait time of a cycle of two steps [s].
+
+        It is infinite if nothing swings.
+        """
         return 2 * pi / abs(self.speed) if self.speed else np.inf
 
     @property
     def pace(self) -> float:
-        """Speed forward at which a foot's backward swing is still on the ground on average [m/s].
+        """Speed forward that fits the feet on average [m/s].
 
-        A foot swings back over 2A in half a cycle. Sinusoidal feet slip all the same: they go by
-        the mean and never lift.
+        A foot's backward swing is then, on average, still on the ground. It goes over 2A in half a
+        cycle. Sinusoidal feet slip all the same: they go by the mean and never lift.
         """
         stride = abs(self.back_z_leg) + abs(self.front_z_leg)  # 2A when both feet swing alike
         return stride * abs(self.speed) / pi
 
     def advance(self, T: ArrayLike) -> Array:
-        """How far the pelvis has moved forward at gait times T (...), (..., 3) [m]."""
+        """Return the pelvis's way forward at gait times T (...), (..., 3) [m]."""
         T = numbers("T", T)
         moved = np.zeros((*T.shape, 3))
         moved[..., 2] = self.pace * T if self.forward else 0.0
         return moved
 
     def mobility(self, tree: Tree) -> Array:
-        """Find the tree's mobility with the wound in it, (n,); LookupError for an unknown joint."""
+        """Return the tree's mobility with the wound in it, (n,).
+
+        LookupError for an unknown joint.
+        """
         s = tree.mobility.copy()
         for joint, value in self.wound.items():
             s[tree.index(joint)] = value
@@ -179,9 +186,10 @@ running = Gait(
 
 
 def stature(tree: Tree, effectors: Effectors) -> tuple[float, Array] | None:
-    """How large a body is against a human, and where its pelvis is (3,) [m].
+    """Compare a body with a human.
 
-    None if its limbs, by the names of their ends, are not in a human's proportions.
+    Return its size as a multiple of a human's, and where its pelvis is (3,) [m]; None if its limbs,
+    by the names of their ends, are not in a human's proportions.
     """
     for like in human(), simulator():
         if not set(effectors.names) <= set(like.effectors.names):
@@ -210,7 +218,10 @@ def _limbs(tree: Tree, effectors: Effectors, names: Iterable[str]) -> list[Array
 
 
 class Motions(dict[str, Gait]):
-    """Gaits by name; an unknown name is answered with what it may have meant."""
+    """Gaits by name.
+
+    An unknown name is answered with the names that may have been meant.
+    """
 
     def __missing__(self, name: str) -> Gait:
         raise LookupError(unknown("motion", name, self))
@@ -220,13 +231,14 @@ MOTIONS = Motions(walking=walking, running=running)
 
 
 def displayed(theta: ArrayLike, *, times: ArrayLike = 1.0, plus: ArrayLike = 0.0) -> Array:
-    """Find the pose that the thesis draws for a wounded body: θ × weight + weight, joint by joint.
+    """Weigh a pose as the thesis draws a wounded body.
 
-    The solver never hears of it (thesis 5.1.1, 5.2.3), so that what is drawn misses targets that
-    what is logged has reached. `Gait.wound` says it to the solver instead.
+    It is θ × weight + weight, joint by joint. The solver never hears of it (thesis 5.1.1, 5.2.3),
+    so that the drawn pose misses targets that the logged one has reached. `Gait.wound` says it to
+    the solver instead.
     """
     theta, times, plus = (
         numbers(name, value) for name, value in (("theta", theta), ("times", times), ("plus", plus))
     )
-    together("theta, times and plus", theta.shape, times.shape, plus.shape)
+    common_batch("theta, times and plus", theta.shape, times.shape, plus.shape)
     return theta * times + plus

@@ -1,4 +1,4 @@
-"""The methods of a live figure, however they are told: by name, as functions, one or many."""
+"""The methods of a live figure, however they are given: by name, as functions, one or many."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any, TypeAlias
@@ -13,12 +13,14 @@ Methods: TypeAlias = Mapping[str, Any] | Iterable[Solver | str] | Solver | str
 
 
 def methods_of(methods: Methods) -> dict[str, Solver]:
-    """Give methods their names: {name: solver}, in the order in which they are told.
+    """Give methods their names, {name: solver}.
+
+    They keep the order in which they are given.
 
     methods  {name: solver or its name}, or solvers and names in a list, or one of them alone
 
     Of solvers that have the same name, the second is called "name 2", and so on. ValueError if
-    there is none, LookupError for an unknown name, TypeError for what is no solver.
+    there is none, LookupError for an unknown name, TypeError for anything but a solver.
     """
     if isinstance(methods, Mapping):
         pairs = list(methods.items())

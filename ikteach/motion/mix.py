@@ -15,12 +15,14 @@ from ikteach.solvers import Solver, ask, name_of
 
 @dataclass(frozen=True, eq=False)
 class Mix:
-    """A solver put together from others: every joint moves as its effector's method would have it.
+    """A solver put together from those of the effectors.
+
+    Every joint moves as its effector's method would have it.
 
     Each distinct method m solves for the whole body, Δθᵐ = m(J, e). A joint that carries only one
     effector takes its entry from that effector's method; a joint that carries several, such as the
     spine, takes the mean over them: Δθ_j = Σ_m share_mj Δθᵐ_j. Of one method alone, a mix is that
-    method. What the methods promise of JΔθ together, a mix does not promise.
+    method. A promise that the methods make of JΔθ together, a mix does not make.
 
     methods  {effector: solver or its name}, one for every effector
     share    (methods, n)  of the effectors that joint j carries, the part that method m has
@@ -33,7 +35,10 @@ class Mix:
 
     @classmethod
     def of(cls, effectors: Effectors, methods: Mapping[str, Solver | str]) -> "Mix":
-        """Make the mix for these effectors; LookupError for an unknown name."""
+        """Make the mix for these effectors.
+
+        LookupError for an unknown name.
+        """
         if not isinstance(methods, Mapping):
             raise TypeError(f"a mix is made of {{effector: method}}, not of {shown(methods)}")
         for name in methods:
@@ -60,10 +65,11 @@ class Mix:
 
 
 class PerPose:
-    """A solver for a batch of poses: pose i of J (p, m, n) and e (p, m) by the i-th method.
+    """A solver that has a method for each pose.
 
-    It serves for one `step`. Where that asks again because of limits, only the poses whose J is
-    another than before are solved anew.
+    Pose i of J (p, m, n) and e (p, m) is solved by the i-th method. It serves for one `step`. Where
+    that asks again because of limits, only the poses whose J is another than before are solved
+    anew.
     """
 
     def __init__(self, solvers: Iterable[Solver | str]) -> None:

@@ -1,4 +1,4 @@
-"""Targets that go along curves, for any figure: what a gait is to a human."""
+"""Targets that go along curves, for any figure, as a gait is for a human."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -17,11 +17,13 @@ SWING = 0.5  # how far a hinge turns to either side of its rest [rad]; a slide, 
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """One motion of k targets along curves of their own; `dataclasses.replace` makes variants.
+    """A motion of k targets along curves of their own.
+
+    `dataclasses.replace` makes variants.
 
     curve           a function: from the phase [rad], of which 2π are once round, to the targets
                     (k, 3) [m]
-    name            what it is called
+    name            its name
     speed           phase per second of its time [rad/s]
     step_frequency  seconds of its time per second of clock time
     slowdown        ticks that one leap waits for and makes up for; 1 is smooth
@@ -54,9 +56,10 @@ class Path:
 
     @classmethod
     def through(cls, points: ArrayLike, name: str = "path", **others: float) -> "Path":
-        """Make a path straight from point to point, (T, k, 3) [m], and back to the first of them.
+        """Make a closed path straight from point to point.
 
-        Once round takes 2π of phase, whatever the lengths. `others` are fields of a path.
+        The points are (T, k, 3) [m], and it goes back to the first. Once round takes 2π of phase,
+        whatever the lengths. `others` are fields of a path.
         """
         stops = frozen(numbers("points of a path", points))
         if stops.ndim != 3 or stops.shape[-1] != 3 or not len(stops):
@@ -72,14 +75,20 @@ class Path:
         return cls(curve, name, **others)  # type: ignore[arg-type]
 
     def at(self, phase: float) -> Array:
-        """Find the targets at that phase [rad], (k, 3) [m]; ValueError if the curve gives none."""
+        """Return the targets at that phase [rad], (k, 3) [m].
+
+        ValueError if the curve gives none.
+        """
         targets = numbers(f"targets of {self.name!r}", self.curve(phase))
         if targets.ndim != 2 or targets.shape[-1] != 3:
             raise ValueError(f"{self.name!r} must give targets (k, 3), not {targets.shape}")
         return targets
 
     def on(self, tree: Tree, effectors: Effectors) -> "Course":
-        """Fit this motion to a body; ValueError if it has not a target for each effector."""
+        """Fit this motion to a body.
+
+        ValueError if it has not a target for each effector.
+        """
         targets = self.at(0.0)
         if len(targets) != len(effectors):
             raise ValueError(
@@ -91,7 +100,10 @@ class Path:
         return Course(self.at, float(points[:, 1].min()))
 
     def mobility(self, tree: Tree) -> Array:
-        """Find the tree's mobility with the wound in it, (n,); LookupError for an unknown joint."""
+        """Return the tree's mobility with the wound in it, (n,).
+
+        LookupError for an unknown joint.
+        """
         s = tree.mobility.copy()
         for joint, value in self.wound.items():
             s[tree.index(joint)] = value
@@ -104,7 +116,7 @@ class Course:
 
     at     from the phase [rad] to targets (k, 3) [m], in the order of its effectors
     floor  height of the ground under it [m]
-    size   what lengths of the motion are multiplied by
+    size   the factor of all lengths of the motion
     """
 
     at: Callable[[float], Array]
@@ -113,10 +125,10 @@ class Course:
 
 
 def swinging(tree: Tree, effectors: Effectors) -> Path:
-    """Find the path on which a body's effectors go when all its joints swing about their rest.
+    """Make the path of effectors whose joints all swing.
 
-    So every target is within reach at every moment, of any body. Joints at an odd depth swing
-    twice as often, that hands do not come back the way they went.
+    The joints swing about their rest. So every target is within reach at every moment, of any body.
+    Joints at an odd depth swing twice as often, so that hands do not come back the way they went.
     """
     wide = np.where(tree.slide, SWING * extent(tree, effectors).radius / 2, SWING)
     up = np.minimum(tree.upper - tree.rest, wide)

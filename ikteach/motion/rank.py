@@ -1,7 +1,7 @@
 """The rank that a body can have: a pose is singular where its Jacobian has less.
 
 J has three rows per effector, but an arm in a plane moves in two of them at most, and two points
-of one bone keep their distance. What no pose of the body can do, no pose has lost.
+of one bone keep their distance. A rank that no pose of the body can have, no pose has lost.
 """
 
 from dataclasses import replace
@@ -18,12 +18,12 @@ ROUNDING = 1e-9  # of the strongest direction: what is weaker has come of roundi
 
 @lru_cache(maxsize=64)
 def full_rank(tree: Tree, effectors: Effectors) -> int:
-    """Find the most rank that J of this body can have, in any pose: from 0 to min(3k, n).
+    """Return the largest rank of J in any pose.
 
-    J depends on θ through sines, cosines and lengths alone, so that its rank is the same in almost
-    every pose. It is looked for in some random poses, always the same ones: hinges anywhere in a
-    full turn, slides as far as the body is large, joints whose limits are one number at that. It
-    depends neither on units nor on where the ground is.
+    It is from 0 to min(3k, n). J depends on θ through sines, cosines and lengths alone, so that its
+    rank is the same in almost every pose. It is looked for in some random poses, always the same
+    ones: hinges anywhere in a full turn, slides as far as the body is large, joints whose limits
+    are one number at that. It depends neither on units nor on where the ground is.
     """
     rng = np.random.default_rng(0)
     ground = (tree.parents < 0)[:, None]
@@ -40,9 +40,9 @@ def full_rank(tree: Tree, effectors: Effectors) -> int:
 
 
 def smallest_sigma(tree: Tree, effectors: Effectors, theta: ArrayLike) -> Array:
-    """Find the smallest σ of J in poses (..., n), of as many as the body can have: (...) [m/rad].
+    """Return the smallest σ of J in poses (..., n).
 
-    It is 0 where the pose is singular.
+    It is (...) [m/rad], of as many σ as the body can have, and 0 where the pose is singular.
     """
     sigma = np.linalg.svdvals(jacobian(tree, forward(tree, theta), effectors))
     rank = full_rank(tree, effectors)

@@ -32,10 +32,10 @@ FREE = 2 * pi - 1e-9  # [rad]; a hinge that can turn so far has no limits: it ge
 def reachable(
     tree: Tree, effectors: Effectors, targets: ArrayLike, *, within: float | None = None
 ) -> Mask:
-    """Find which effectors can reach their targets, limits on: (..., k) for (..., k, 3) [m].
+    """Check which effectors can reach their targets, limits on: (..., k) for (..., k, 3) [m].
 
-    An effector reaches a target that it can come within so many metres of. If `within` is not
-    given, they are a thousandth of the length of its chain (`annulus`), where slides without limits
+    An effector reaches a target that it can come within `within` metres of. If `within` is not
+    given, it is a thousandth of the length of its chain (`annulus`), where slides without limits
     do not count; of the way to the target where nothing else has a length.
 
     It is sure of True, as it has found a pose. False means that many starts have led to none.
@@ -46,20 +46,24 @@ def reachable(
 
 
 def nearest(tree: Tree, effectors: Effectors, targets: ArrayLike, *, within: float = 0.0) -> Array:
-    """Find how near each effector can come to its target with limits on, (..., k) [m].
+    """Return how near effectors come to targets (..., k) [m].
 
-    A search from several starts: an upper bound that more starts could only lower. It stops early
-    where `within` is met [m].
+    Each effector goes to its own target, with limits on. The search has several starts: its answer
+    is an upper bound, which more starts could only lower. It stops early where `within` is met [m].
     """
     _, targets = checked(tree, tree.rest, effectors, targets)
     return _search(tree, effectors, targets, number("within", within))
 
 
 def annulus(tree: Tree, effectors: Effectors, i: int) -> tuple[Array, float, float]:
-    """Find where effector i's chain is fixed (3,), and how near and far it could stretch [m].
+    """Return effector i's base, and how near and far it stretches.
 
-    As if every joint could turn any way: links ℓ reach from max(0, 2 max ℓ − Σℓ) to Σℓ. Limits and
-    axes only take from that. A slide makes its link as long, or as short, as its limits let it.
+    The base is where its chain is fixed (3,) [m]; the two distances [m] are how near and far the
+    chain could stretch.
+
+    It is as if every joint could turn any way: links ℓ reach from max(0, 2 max ℓ − Σℓ) to Σℓ.
+    Limits and axes only take from that. A slide makes its link as long, or as short, as its limits
+    let it.
     """
     limb = _limb(tree, effectors, i)
     if limb.endless.any():
@@ -83,7 +87,10 @@ class _Limb(NamedTuple):
 
     @property
     def length(self) -> float:
-        """Σℓ, stretched, but with slides without limits as short as they can be [m]."""
+        """Σℓ, the stretched length [m].
+
+        Slides without limits count as short as they can be.
+        """
         return float(np.where(np.isfinite(self.far), self.far, self.near).sum())
 
     @property
@@ -161,9 +168,9 @@ def _volleys(limb: _Limb, goals: Array, near: Array) -> Array:
 
 
 def _starts(limb: _Limb, goals: Array, count: int, rng: np.random.Generator) -> Array:
-    """So many poses (g, count, n) for each goal (g, 3), each the nearest of a swarm at random.
+    """Draw poses (g, count, n) for goals (g, 3), each the nearest of a random swarm.
 
-    Limits may lie anywhere: what has only one goes on from it, and what has none starts around
+    Limits may lie anywhere: a joint with one goes on from it, and a joint with none starts around
     rest, hinges in a full turn, slides as far as there and as the chain is long.
     """
     tree, end = limb.tree, limb.end

@@ -1,4 +1,4 @@
-"""What stands around the solver, the same for every method: clamp, caps and limits.
+"""The rules around the solver, the same for every method: clamp, caps and limits.
 
 Each rule is a function that is handed to `step`.
 """
@@ -9,7 +9,7 @@ from math import radians
 
 import numpy as np
 
-from ikteach.arrays import Array, ArrayLike, Index, Mask
+from ikteach.arrays import TINY, Array, ArrayLike, Index, Mask
 from ikteach.body import Tree
 
 # The step caps of Buss's code [rad]; SDLS bounds its own step. The thesis describes the one of the
@@ -21,15 +21,15 @@ BUSS_CAPS: Mapping[str, float | None] = {
     "sdls": None,
 }
 
-TINY = 1e-150  # keeps 0 / 0 away where nothing moves
-
 Cap = Callable[[Array, ArrayLike, Index], Array]
 Again = Callable[[Mask, Array], Array]
 LimitRule = Callable[["Bounds", Array, Array, Again], tuple[Array, Mask]]
 
 
 class Bounds:
-    """Where each joint may be at the end of this tick, (..., n) or (n,) [rad].
+    """The range of each joint in this tick.
+
+    It is where the joint may be at the end of it, (..., n) or (n,) [rad].
 
     They are the limits; for a joint that is beyond one, from there to as near to it as it may turn.
     """
@@ -65,7 +65,9 @@ def clamp_error(e: Array, max_error: ArrayLike) -> Array:
 
 
 def whole(dtheta: Array, max_step: ArrayLike, chains: Index) -> Array:
-    """Shorten the whole step so that no joint turns further than max_step (Buss; thesis 4.4.2).
+    """Shorten the whole step to a largest turn max_step.
+
+    No joint then turns further (Buss; thesis 4.4.2).
 
     The direction stays, but one hand that cannot reach its target slows all four limbs.
     """
@@ -83,15 +85,19 @@ def per_chain(dtheta: Array, max_step: ArrayLike, chains: Index) -> Array:
 
 
 def ignore(bounds: Bounds, theta: Array, dtheta: Array, again: Again) -> tuple[Array, Mask]:
-    """Let the joints turn past their limits, as in Buss's code."""
+    """Let the joints turn past their limits.
+
+    So does Buss's code.
+    """
     to = theta + dtheta
     return to, np.zeros(to.shape, dtype=bool)
 
 
 def clip(bounds: Bounds, theta: Array, dtheta: Array, again: Again) -> tuple[Array, Mask]:
-    """Put a joint that passed its limit back to it, after the solve (thesis 5.1.1).
+    """Put a joint that passed its limit back.
 
-    What the solver meant the other joints to add is then wrong: this alone ruins the pseudoinverse.
+    It goes to the limit, after the solve (thesis 5.1.1). The steps that the solver meant for the
+    other joints are then wrong: this alone ruins the pseudoinverse.
     """
     wished = theta + dtheta
     to = bounds.clip(wished)
@@ -99,7 +105,9 @@ def clip(bounds: Bounds, theta: Array, dtheta: Array, again: Again) -> tuple[Arr
 
 
 def hold(bounds: Bounds, theta: Array, dtheta: Array, again: Again) -> tuple[Array, Mask]:
-    """Hold the joints that stand at a limit and would cross it, and let the others step again.
+    """Hold joints at their limits, and step again.
+
+    A joint that stands at a limit and would cross it is held; the others step again.
 
     A joint beyond its limit, that does not come back by itself, is held to its way back.
     """

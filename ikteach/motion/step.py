@@ -1,6 +1,6 @@
-"""One tick: targets in, a new pose out. What stands around the solver, the same for every method.
+"""One tick: targets in, a new pose out. All around the solver is the same for every method.
 
-Each rule (what a cap shortens, what a limit does) is a function that is handed in (`rules`).
+Each rule (how a cap shortens, how a limit stops) is a function that is handed in (`rules`).
 """
 
 from dataclasses import dataclass
@@ -25,14 +25,14 @@ from ikteach.solvers import Solver, ask
 
 
 class Step(NamedTuple):
-    """What one tick did.
+    """The outcome of one tick.
 
     theta   (..., n)      the new pose [rad]: finite, and where θ was within the limits, within them
                           (unless they are ignored)
     e       (..., 3k)     t − s before the step, not clamped [m]
     J       (..., 3k, n)  the Jacobian that the step is taken with [m/rad]
-    wanted  (..., n)      what the solver asked for, before cap and limits [rad]
-    dtheta  (..., n)      what was done [rad]
+    wanted  (..., n)      the solver's answer, before cap and limits [rad]
+    dtheta  (..., n)      the step that was taken [rad]
     capped  (...)         True where the cap shortened the step, or the way back of a joint that
                           was beyond its limits
     held    (..., n)      True where a limit stopped a joint, or brought it back
@@ -73,9 +73,9 @@ def step(
     solver      a function of (J, e), or the name of one of `SOLVERS`
     max_error   D [m], one number or (..., k): each e_i is shortened to D_i before the solve
     max_step    [rad], one number or (...): no joint turns further in one step
-    cap         what is shortened to that: the `whole` step, or each chain by itself (`per_chain`)
+    cap         shortens the `whole` step to that, or each chain by itself (`per_chain`)
     mobility    s (..., n), 0 locked .. 1 free, in place of the tree's: Δθ = s ∘ solver(J ∘ s, e)
-    limits      what happens at a limit: `hold`, `clip` or `ignore`
+    limits      the rule at a limit: `hold`, `clip` or `ignore`
     at_targets  form J at the targets in place of the effectors (thesis 3.2)
     frames      forward(tree, theta), from whoever has it already
 
@@ -106,17 +106,8 @@ def step(
     for array in (J, e, aim):  # no solver may change them
         array.setflags(write=False)
 
-    question = _Question(
-        solver,
-        theta,
-        J,
-        aim,
-        free,
-        free is tree.mobility and tree.free,
-        max_step,
-        cap,
-        effectors.chains,
-    )
+    all_free = free is tree.mobility and tree.free
+    question = _Question(solver, theta, J, aim, free, all_free, max_step, cap, effectors.chains)
     wanted = question.answer(free, aim)
     if wanted.ndim <= len(batch):  # there is a cap for each of a batch
         wanted = np.broadcast_to(wanted, (*batch, len(tree)))
@@ -131,7 +122,7 @@ def step(
 
 @dataclass
 class _Question:
-    """What one tick asks of a solver; a limit rule may ask it again."""
+    """The question of one tick to a solver; a limit rule may ask it again."""
 
     solver: Solver
     theta: Array
@@ -159,13 +150,19 @@ class _Question:
         return dtheta
 
     def again(self, held: Mask, home: Array) -> Array:
-        """Let held joints go home, and the others take what is then left of e."""
+        """Step again with the joints that are not held.
+
+        Held joints go home, and the others take the part of e that is then left.
+        """
         way = np.where(held, home - self.theta, 0)
         left = self.aim - np.matvec(self.J, way) if np.count_nonzero(way) else self.aim
         return way + self.shorten(self.answer(self.free * ~held, left))
 
     def turn(self) -> Array | None:
-        """Find how far each joint may turn in this tick, None for any way [rad]."""
+        """Return the largest turn of each joint [rad].
+
+        It is for this tick; None for any way.
+        """
         locked = not self.all_free and np.count_nonzero(self.free) < self.free.size
         if self.max_step is None and not locked:
             return None

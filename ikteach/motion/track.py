@@ -11,7 +11,7 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Mask
 from ikteach.body import Effectors, Tree, forward, locate
-from ikteach.checks import count, function, number, numbers, shown, together
+from ikteach.checks import common_batch, count, function, number, numbers, shown
 from ikteach.motion.checks import checked, solver_of
 from ikteach.motion.rank import smallest_sigma
 from ikteach.motion.step import step
@@ -23,7 +23,9 @@ ErrorClampRule = Callable[[Array, Array], ArrayLike]
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """T frames of a figure following targets, with whatever else may be asked about them.
+    """T frames of a figure following targets.
+
+    Properties answer for all else that may be asked about them.
 
     method                      the solver's name
     tree, effectors             the figure
@@ -110,7 +112,7 @@ def track(
         raise ValueError(f"there are no frames in targets of shape {targets.shape}")
     iterations, clock = count("iterations", iterations), _clock(len(targets), dt, times)
     start, targets = checked(tree, start, effectors, targets)
-    together("theta and targets", start.shape[:-1], targets.shape[1:-2])
+    common_batch("theta and targets", start.shape[:-1], targets.shape[1:-2])
     chosen = solver_of(solver)
     if clamp_rule is not None:
         function("clamp_rule", clamp_rule)
@@ -129,18 +131,9 @@ def track(
             column.append(value)
     seconds = (perf_counter() - began) / (len(targets) * iterations)
     poses, errors, shares, holds = map(np.array, kept)
+    start, name = np.broadcast_to(start, np.shape(pose)), name_of(chosen)
     return Track(
-        name_of(chosen),
-        tree,
-        effectors,
-        clock,
-        targets,
-        np.broadcast_to(start, np.shape(pose)),
-        poses,
-        errors,
-        shares,
-        holds,
-        seconds,
+        name, tree, effectors, clock, targets, start, poses, errors, shares, holds, seconds
     )
 
 

@@ -118,7 +118,7 @@ def with_solutions(notebook: Notebook) -> Notebook:
 
 
 def checks(cell: Notebook) -> Iterator[tuple[str, str]]:
-    """(key, name of the answer) of each `check("key", name)` in a cell."""
+    """List (key, name of the answer) of each `check("key", name)` in a cell."""
     for node in ast.walk(ast.parse(cell.source)):
         if not (isinstance(node, ast.Call) and getattr(node.func, "id", "") == "check"):
             continue
@@ -128,7 +128,7 @@ def checks(cell: Notebook) -> Iterator[tuple[str, str]]:
 
 
 def solution(key: str) -> str:
-    """Find the source of a solution, or raise LookupError."""
+    """Return the source of a solution, or raise LookupError."""
     chapter = Path(__file__).parents[1] / "course" / "solutions" / f"ch{key.partition('.')[0]}.py"
     if not chapter.exists():
         raise LookupError(
@@ -142,6 +142,6 @@ def solution(key: str) -> str:
 
 
 def solutions(text: str) -> dict[str, str]:
-    """Key -> source of each solution in a module's text."""
+    """Return {key: source} of the solutions in a module's text."""
     _, *parts = MARK.split(text)
     return {key: source.strip() for key, source in zip(parts[::2], parts[1::2], strict=True)}

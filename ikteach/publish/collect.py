@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import pandas as pd
 
-from ikteach.course.questions import words
+from ikteach.course.questions import written
 from ikteach.course.record import ANSWER_KINDS, LARGEST_ANSWERS, valid
 from ikteach.files import bounded, read_json, whole_characters, write_whole
 from ikteach.publish.parser import Parser, RefusedError
@@ -31,7 +31,7 @@ LEADING = ["student", "file", "kind", "key", "answer", "result", "right", "tries
 
 
 class Collected(NamedTuple):
-    """What was found.
+    """The answers that were found.
 
     table    a row for each student, file, kind and key: `LEADING`, then whatever else was recorded;
              `right` is None for a number that was predicted, and where no result was shown
@@ -81,7 +81,7 @@ def collect(folder: Path) -> Collected:
 def summarise(table: pd.DataFrame) -> pd.DataFrame:
     """Summarise the answers, a row per question.
 
-    How many answered, how many are right, what they said. Of a student who handed in several files
+    How many answered, how many are right, their answers. Of a student who handed in several files
     the newest answer counts.
     """
     in_time = table.sort_values("at", kind="stable", na_position="first")
@@ -194,7 +194,7 @@ def _right(kind: str, entry: dict[str, Any]) -> bool | None:
 def _cell(value: Any) -> Any:
     """Make a value fit for a cell of the table."""
     if isinstance(value, list | str):
-        return words(value)
+        return written(value)
     return bounded(str(value)) if isinstance(value, dict) else value
 
 

@@ -36,7 +36,7 @@ class Delivery(NamedTuple):
 
 
 def find_course() -> CourseFolder:
-    """Find the course: of the clone, or in the wheel."""
+    """Return the course: of the clone, or in the wheel."""
     clone = PACKAGE.parent
     if (clone / "pyproject.toml").is_file() and (clone / "notebooks").is_dir():
         return CourseFolder(clone / "notebooks", clone=True)
@@ -59,7 +59,7 @@ def chapters(notebooks: Path) -> dict[str, str]:
 
 
 def title(notebook: Path) -> str:
-    """Find the title of a notebook.
+    """Return the title of a notebook.
 
     The first `# ` heading of its first markdown cell; empty where there is none.
     """
@@ -73,7 +73,7 @@ def title(notebook: Path) -> str:
 
 
 def decide(ours: str, theirs: str | None, delivered: str | None) -> Outcome:
-    """Decide what to do with a file, from hashes.
+    """Choose the action for a file, from hashes.
 
     Of ours now, of the student's, and of ours of the last time. None stands for no file, and for
     never delivered.
@@ -103,7 +103,7 @@ def deliver(notebooks: Path, folder: Path) -> list[Delivery]:
 
 
 def report(deliveries: list[Delivery], folder: Path) -> list[str]:
-    """Tell what was done: new files counted, others named."""
+    """Report the outcome: new files counted, others named."""
     new = [delivery.name for delivery in deliveries if delivery.outcome == "copied"]
     count = sum(name.endswith(".ipynb") for name in new)
     others = f", other files: {len(new) - count}" if len(new) > count else ""

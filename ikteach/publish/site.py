@@ -45,7 +45,7 @@ TIMEOUT = 60  # [s] without a byte
 
 
 class Size(NamedTuple):
-    """What a build has made."""
+    """The counts and bytes of a build."""
 
     chapters: int
     files: int
@@ -159,7 +159,7 @@ def fetch_kernel(folder: Path) -> Path:
 
 
 def distribution(where: str, folder: Path, kernel: Path) -> list[str]:
-    """Put what the course needs of Python into `folder`.
+    """Put the Python packages of the course into `folder`.
 
     Returns the names of its packages.
     """
@@ -200,7 +200,7 @@ def distribution(where: str, folder: Path, kernel: Path) -> list[str]:
 
 
 def is_address(where: str) -> bool:
-    """Whether it is on the web, and not a folder."""
+    """Tell whether it is on the web, and no folder."""
     return where.startswith(("https://", "http://"))
 
 

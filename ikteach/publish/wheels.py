@@ -26,7 +26,7 @@ LockEntry = dict[str, Any]  # of a package in Pyodide's lock file
 
 
 class Metadata(NamedTuple):
-    """What a wheel says of itself."""
+    """The facts that a wheel states about itself."""
 
     name: str
     version: str
@@ -94,7 +94,7 @@ def _pure(installed: Distribution) -> dict[PurePosixPath, Path]:
 
 
 def metadata(wheel: Path) -> Metadata:
-    """Name, version, requirements and import names of a wheel."""
+    """Read name, version, requirements and import names of a wheel."""
     with zipfile.ZipFile(wheel) as archive:
         names = archive.namelist()
         (place,) = (n for n in names if re.fullmatch(r"[^/]+\.dist-info/METADATA", n))
@@ -178,5 +178,5 @@ def _fits(name: str, one: Requirement, pyodide: Mapping[str, LockEntry]) -> None
 
 
 def digest(data: bytes) -> str:
-    """SHA-256, as lock files have it."""
+    """Compute the SHA-256, as lock files have it."""
     return hashlib.sha256(data).hexdigest()

@@ -14,7 +14,7 @@ def options(
 ) -> tuple[argparse.Namespace, list[str]]:
     """Read the options of `parser` and of every server.
 
-    And what follows `--`: The latter is for the server's own program.
+    Give them, and the words after `--`, which are for the server's own program.
     """
     parser.add_argument("--no-browser", action="store_true", help="print the address only")
     parser.add_argument("--port", metavar="N", type=port_number, help="use exactly this port")

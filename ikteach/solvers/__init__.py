@@ -22,7 +22,10 @@ Solver = Callable[..., Array]
 
 
 class Solvers(dict[str, Solver]):
-    """Solvers by name; an unknown name is answered with what it may have meant."""
+    """Solvers by name.
+
+    An unknown name is answered with the names that may have been meant.
+    """
 
     def __missing__(self, name: str) -> Solver:
         raise LookupError(unknown("method", name, self))

@@ -8,30 +8,31 @@ from ikteach.solvers.stacked import NONE
 
 
 def determinant(A: ArrayLike) -> Array:
-    """det A = a · (b × c) of A (..., 3, 3) with the columns a, b, c: (...)."""
+    """Return det A = a · (b × c) of A (..., 3, 3) with the columns a, b, c: (...)."""
     a, b, c = columns(A)
     return np.vecdot(a, np.linalg.cross(b, c))
 
 
 def adjugate(A: ArrayLike) -> Array:
-    """adj A (..., 3, 3), with adj(A) A = det(A) I: its rows are b × c, c × a and a × b."""
+    """Return adj A (..., 3, 3), with adj(A) A = det(A) I: its rows are b × c, c × a and a × b."""
     a, b, c = columns(A)
     rows = np.linalg.cross(b, c), np.linalg.cross(c, a), np.linalg.cross(a, b)
     return np.stack(rows, axis=-2)
 
 
 def independence(J: ArrayLike) -> Array:
-    """|det J| over the product of the lengths of its columns, (...), from 0 to 1.
+    """Divide |det J| by the product of its columns' lengths.
 
-    It is 1 where the three joints of J (..., 3, 3) move the effector at right angles to each
-    other and 0 where the ways lie in a plane. No change of units changes it, as it would det J.
+    The quotient (...) is from 0 to 1. It is 1 where the three joints of J (..., 3, 3) move the
+    effector at right angles to each other and 0 where the ways lie in a plane. No change of units
+    changes it, as it would det J.
     """
     unit, length = _unit_columns(_square(J))
     return np.where((length > NONE).all(axis=-1), abs(determinant(unit)), 0)
 
 
 def cramer(J: ArrayLike, e: ArrayLike, *, least: float = 1e-6) -> Array:
-    """Δθ = J⁻¹e = adj(J) e / det(J), for three joints and three coordinates.
+    """Step Δθ = J⁻¹e = adj(J) e / det(J), for 3 joints and 3 coordinates.
 
     J      (..., 3, 3)  Jacobian [m/rad]
     e      (..., 3)     error [m]
@@ -50,7 +51,7 @@ def cramer(J: ArrayLike, e: ArrayLike, *, least: float = 1e-6) -> Array:
 
 
 def columns(A: ArrayLike) -> tuple[Array, Array, Array]:
-    """Find the three columns of A (..., 3, 3), each (..., 3)."""
+    """Return the three columns of A (..., 3, 3), each (..., 3)."""
     A = _square(A)
     return A[..., 0], A[..., 1], A[..., 2]
 

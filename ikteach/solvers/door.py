@@ -1,4 +1,4 @@
-"""The two doors of a solver: what goes into it, and what it gives back, whoever wrote it."""
+"""The two doors of a solver: its question and its answer are checked, whoever wrote it."""
 
 from collections.abc import Callable, Mapping
 from functools import partial, wraps
@@ -8,7 +8,7 @@ from typing import Any, Concatenate, NamedTuple, ParamSpec, cast
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, finite
-from ikteach.checks import FLOAT, LONG, number, numbers, shown, system, together
+from ikteach.checks import FLOAT, LONG, common_batch, number, numbers, shown, system
 
 HUGE = 1e150  # its square is still finite
 
@@ -17,18 +17,24 @@ P = ParamSpec("P")
 
 
 class Formula(NamedTuple):
-    """What a solver does with a J, an e and options that have been checked."""
+    """A solver's formula and the checks of its options.
+
+    `apply` gets a J, an e and options that have been checked.
+    """
 
     apply: Callable[..., Array]
     checks: Mapping[str, Check]
 
     def check(self, options: dict[str, Any], J: Array, e: Array) -> dict[str, Any]:
-        """Check options, in place; ValueError or TypeError names the one that cannot be."""
+        """Check options, in place.
+
+        ValueError or TypeError names the one that cannot be.
+        """
         for name, check in self.checks.items():
             if name in options:
                 value = options[name] = check(name, options[name])
                 if type(value) is np.ndarray:
-                    together(f"J, e and {name}", J.shape[:-2], e.shape[:-1], value.shape)
+                    common_batch(f"J, e and {name}", J.shape[:-2], e.shape[:-1], value.shape)
         return options
 
 
@@ -41,9 +47,11 @@ def solver(
     [Callable[Concatenate[Array, Array, P], Array]],
     Callable[Concatenate[ArrayLike, ArrayLike, P], Array],
 ]:
-    """Make a solver of a formula: J, e and the options named here are checked first.
+    """Make a solver of a formula.
 
-    A check is a function of an option's name and value; it gives what the formula takes.
+    J, e and the options named here are checked first.
+
+    A check is a function of an option's name and value; it gives the value for the formula.
     `step`, which has checked J and e already, goes to the formula directly (`ask`).
     """
 
@@ -69,7 +77,10 @@ def unchecked(solver: Any) -> Callable[..., Array]:
 
 
 def per_pose(name: str, value: ArrayLike) -> Any:
-    """Check one number, or one per pose (...), 0 or more, whose square is finite."""
+    """Check one number, or one per pose.
+
+    Each is 0 or more, and its square is finite; one per pose is (...).
+    """
     if type(value) is float and 0 <= value < HUGE:
         return value
     if np.ndim(value) == 0:
@@ -84,11 +95,12 @@ def per_pose(name: str, value: ArrayLike) -> Any:
 
 
 def ask(solver: Any, J: Array, e: Array) -> Array:
-    """Ask a solver for Δθ (..., n), given J (..., m, n) and e (..., m) that it cannot write to.
+    """Ask a solver for Δθ (..., n).
 
-    A list, or whole numbers, of the right shape are an answer too. ValueError says what came
-    instead and what is wanted, FloatingPointError that a number is not finite; both name the
-    solver. An error of the solver's own stays what it is, with a note of where it came from.
+    It is given J (..., m, n) and e (..., m), to which it cannot write. A list, or whole numbers, of
+    the right shape are an answer too. ValueError says which answer came and which is wanted,
+    FloatingPointError that a number is not finite; both name the solver. An error of the solver's
+    own stays what it is, with a note of where it came from.
     """
     if (formula := _ours(solver, J, e)) is not None:
         try:
@@ -138,7 +150,10 @@ def _asked(solver: Any, J: Array, e: Array) -> Array:
 
 
 def sealed(array: Array) -> Array:
-    """Find the array if nobody can write to it, else a copy to which nobody can."""
+    """Return the array, or a copy, sealed against writing.
+
+    It is a copy only where somebody could write to the array.
+    """
     if array.flags.writeable:
         array = array.copy()
         array.setflags(write=False)
@@ -146,7 +161,10 @@ def sealed(array: Array) -> Array:
 
 
 def name_of(solver: Any) -> str:
-    """Find the name of a solver, also of one with its options bound; else that of its class."""
+    """Return the name of a solver.
+
+    It may have its options bound; if it has no name, it is called by its class.
+    """
     while isinstance(solver, partial):
         solver = solver.func
     try:

@@ -5,9 +5,7 @@ import numpy as np
 from ikteach.arrays import Array
 from ikteach.checks import number
 from ikteach.solvers.door import solver
-from ikteach.solvers.stacked import strong, vecmat
-
-EPS = float(np.finfo(float).eps)  # weaker directions have come of rounding
+from ikteach.solvers.stacked import EPS, strong, vecmat
 
 
 @solver(cutoff=number)

@@ -1,4 +1,4 @@
-"""Chapter 6. One singular direction at a time: what each method makes of what it is asked.
+"""Chapter 6. One singular direction at a time: the answer of each method along it.
 
 With J = U Σ Vᵀ and α_i = u_iᵀe, every one of the four methods is
 
@@ -26,7 +26,9 @@ from ikteach.solvers.transpose import transpose, transpose_response
 
 
 class Directions(NamedTuple):
-    """The singular directions of J, strongest first, and what SDLS knows of each.
+    """The singular directions of J, strongest first.
+
+    SDLS knows N, M and gamma of each.
 
     sigma  (..., r)     σ_i [m/rad]
     alpha  (..., r)     α_i = u_iᵀe, the error along u_i [m]; the signs of u_i and v_i, which are
@@ -48,7 +50,7 @@ class Directions(NamedTuple):
 
 
 def directions(J: ArrayLike, e: ArrayLike, *, max_angle: float = pi / 4) -> Directions:
-    """Find the singular directions of J (..., 3k, n), and e (..., 3k) along them.
+    """Return the singular directions of J (..., 3k, n), and e (..., 3k) along them.
 
     M is infinite, and γ is 0, where σ is not above SDLS's smallest: those directions it leaves out.
     ValueError as in `sdls`. Source: thesis 4.4.5; Buss & Kim 2005.
@@ -65,7 +67,7 @@ def directions(J: ArrayLike, e: ArrayLike, *, max_angle: float = pi / 4) -> Dire
 
 
 def factors(J: ArrayLike, e: ArrayLike, dtheta: ArrayLike, *, least: float = 1e-9) -> Array:
-    """Find f_i (..., r) [rad/m] of any step: Δθ = Σ f_i (u_iᵀe) v_i, for Δθ (..., n).
+    """Return f_i (..., r) [rad/m] of any step: Δθ = Σ f_i (u_iᵀe) v_i, for Δθ (..., n).
 
     The pseudoinverse has 1/σ_i, DLS σ_i / (σ_i² + λ²), the transpose α σ_i. Not a number where the
     error has no part along u_i, at most `least` of its length: there is nothing to answer.
@@ -81,7 +83,7 @@ def factors(J: ArrayLike, e: ArrayLike, dtheta: ArrayLike, *, least: float = 1e-
 
 
 def response(solver: Callable[..., Array], J: ArrayLike, e: ArrayLike) -> Array:
-    """Find f (r,) [rad/m] of a method, for each singular direction of J and this e.
+    """Return f (r,) [rad/m] of a method, for each singular direction of J and this e.
 
     By the formula for the four methods, also with options bound by `partial`; for any other by
     `factors` of its answer, and 0 where the error has no part.

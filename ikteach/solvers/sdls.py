@@ -23,7 +23,10 @@ def hard(phi: Array, bound: ArrayLike) -> Array:
 
 
 def soft(phi: Array, bound: ArrayLike) -> Array:
-    """Make φ · γ / (γ + max|φ|) for bound γ (...): it nears the bound and does not meet it."""
+    """Make φ · γ / (γ + max|φ|) for bound γ (...).
+
+    It nears the bound and does not meet it.
+    """
     return phi * np.divide(bound, np.add(bound, _peak(phi)))[..., None]
 
 
@@ -66,7 +69,10 @@ def sdls_response(
 
 
 def clamped_where_over(dtheta: Array, max_angle: float, clamp: Clamp) -> Array:
-    """Clamp the steps (..., n) in which some joint turns further than max_angle [rad]."""
+    """Clamp the steps (..., n) beyond max_angle [rad].
+
+    A step is beyond it if some joint turns further than that.
+    """
     if dtheta.ndim == 1:
         return dtheta if np.maximum.reduce(abs(dtheta)) <= max_angle else clamp(dtheta, max_angle)
     over = _peak(dtheta) > max_angle
@@ -95,7 +101,7 @@ def three_rows(J: Array) -> None:
 def bounds(
     J: Array, U: Array, sigma: Array, Vt: Array, max_angle: float
 ) -> tuple[Array, Array, Array]:
-    """Find N, M [m] and γ [rad] of each singular direction of J = U diag(σ) Vᵀ, (..., r).
+    """Return N, M [m] and γ [rad] of each singular direction of J = U diag(σ) Vᵀ, (..., r).
 
     γ_i = min(1, N_i / M_i) γ_max; the σ are above 0.
     """
@@ -106,6 +112,6 @@ def bounds(
 
 
 def lengths(A: Array) -> Array:
-    """Find the length of each 3-vector in the columns of A (..., 3k, r): (..., k, r)."""
+    """Return the length of each 3-vector in the columns of A (..., 3k, r): (..., k, r)."""
     squares = (A * A).reshape(*A.shape[:-2], A.shape[-2] // 3, 3, A.shape[-1])
     return np.sqrt(np.add.reduce(squares, axis=-2))

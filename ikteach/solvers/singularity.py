@@ -12,8 +12,7 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Index
 from ikteach.checks import count, matrix
-
-EPS = float(np.finfo(float).eps)
+from ikteach.solvers.stacked import EPS
 
 
 class Ellipsoid(NamedTuple):
@@ -28,7 +27,7 @@ class Ellipsoid(NamedTuple):
 
 
 def ellipsoid(J: ArrayLike) -> Ellipsoid:
-    """Find the manipulability ellipsoid {JΔθ : ‖Δθ‖ = 1} of J (..., m, n) (Yoshikawa 1985)."""
+    """Return the manipulability ellipsoid {JΔθ : ‖Δθ‖ = 1} of J (..., m, n) (Yoshikawa 1985)."""
     U, sigma, _ = np.linalg.svd(matrix(J))
     lengths = np.zeros(U.shape[:-1])
     lengths[..., : sigma.shape[-1]] = sigma
@@ -36,20 +35,21 @@ def ellipsoid(J: ArrayLike) -> Ellipsoid:
 
 
 def manipulability(J: ArrayLike, *, rank: int | None = None) -> Array:
-    """Find σ_1 σ_2 … σ_rank of J (..., m, n): the volume of the ellipsoid up to a constant.
+    """Multiply σ_1 σ_2 … σ_rank of J (..., m, n).
 
-    It is 0 at a singular pose. Where all m rows count, it is √det(JJᵀ). Near 0 is no test for
-    nearly singular: its size depends on the units and on the body; use `conditioning` or the
-    smallest σ. rank is the most that this body can have.
+    It is the volume of the ellipsoid up to a constant, and 0 at a singular pose. Where all m rows
+    count, it is √det(JJᵀ). Near 0 is no test for nearly singular: its size depends on the units and
+    on the body; use `conditioning` or the smallest σ. rank is the most that this body can have.
     """
     sigma, counts = _sigma(J, rank)
     return np.where(counts, sigma, 1).prod(axis=-1)
 
 
 def conditioning(J: ArrayLike, *, rank: int | None = None) -> Array:
-    """Find σ_max / σ_rank of J (..., m, n): 1 where all ways are as easy, inf where one is lost.
+    """Divide σ_max / σ_rank of J (..., m, n).
 
-    rank is the most that this body can have.
+    It is 1 where all ways are as easy, inf where one is lost. rank is the most that this body can
+    have.
     """
     sigma, counts = _sigma(J, rank)
     strongest, weakest = sigma[..., 0], np.where(counts, sigma, np.inf).min(axis=-1)

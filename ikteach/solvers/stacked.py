@@ -1,7 +1,7 @@
 """Linear algebra on stacks of matrices (..., m, n), made fast for one matrix alone.
 
-The formulas of the solvers are written with these. Here is what a formula does not say: scalar
-paths, as an array of one number costs as much as JJᵀ does, and what keeps 0 / 0 away.
+The formulas of the solvers are written with these. Here is all that a formula leaves out: scalar
+paths, as an array of one number costs as much as JJᵀ does, and bounds that keep 0 / 0 away.
 """
 
 from math import sqrt
@@ -16,6 +16,7 @@ from ikteach.arrays import Array
 NONE = 1e-150  # [m/rad]
 SQUARE = 1e-300
 TINY = 1e-200  # keeps JJᵀ + λ²I regular, and 0 / 0 away where a step is zero
+EPS = float(np.finfo(float).eps)  # weaker directions have come of rounding
 ROUNDING = 1e-13  # of the diagonal of JJᵀ: what is added below it is lost
 
 
@@ -40,9 +41,10 @@ def gram(A: Array) -> Array:
 
 
 def plus_diagonal(A: Array, d: Any) -> Array:
-    """Add d, one number or (...), to the diagonal of A (..., m, m), in place where it has room.
+    """Add d to the diagonal of A (..., m, m), in place.
 
-    At least as much as rounding lets us see of JJᵀ, so that the sum is regular.
+    d is one number or (...); A is changed where it has room. Added is at least as much as rounding
+    lets us see of JJᵀ, so that the sum is regular.
     """
     m = A.shape[-1]
     if A.ndim == 2 and type(d) is not np.ndarray:
@@ -62,7 +64,10 @@ def plus_diagonal(A: Array, d: Any) -> Array:
 
 
 def unit(v: Array) -> Array:
-    """Divide v (..., n) by its largest entry, that no square of it under- or overflows."""
+    """Divide v (..., n) by its largest entry.
+
+    No square of it then under- or overflows.
+    """
     return v / np.maximum.reduce(abs(v), axis=-1, keepdims=True, initial=SQUARE)
 
 
@@ -76,10 +81,13 @@ def ratio(v: Array, w: Array) -> Any:
 
 
 def norm(A: Array) -> Any:
-    """Find ‖A‖, the root of the sum of squares of A (..., m, n): (...)."""
+    """Return ‖A‖, the root of the sum of squares of A (..., m, n): (...)."""
     return sqrt(np.vdot(A, A)) if A.ndim == 2 else np.sqrt(np.square(A).sum(axis=(-2, -1)))
 
 
 def strong(sigma: Array, share: float) -> Array:
-    """Put ∞ for each σ (..., r) that is not above this share of the largest: 1/σ is then 0."""
+    """Put ∞ for each weak σ (..., r).
+
+    A weak σ is not above this share of the largest; its 1/σ is then 0.
+    """
     return np.where(sigma > np.maximum(NONE, share * sigma[..., :1]), sigma, np.inf)

@@ -9,8 +9,8 @@ import numpy as np
 from ikteach.arrays import Array, ArrayLike, Index
 from ikteach.body import Effectors, Tree, forward, jacobian, locate
 from ikteach.body.tree import GROUND
+from ikteach.checks import common_batch, number, numbers, shown
 from ikteach.checks import count as whole_number
-from ikteach.checks import number, numbers, shown, together
 from ikteach.motion.checks import checked
 from ikteach.motion.live.log import of_run
 from ikteach.motion.methods import Methods, methods_of
@@ -156,7 +156,7 @@ def iterations(
     """
     pose, goal = checked(tree, tree.rest if theta is None else theta, effectors, targets)
     within, most = number("within", within), whole_number("most", most, least=0)
-    batch = together("theta and targets", pose.shape[:-1], goal.shape[:-2])
+    batch = common_batch("theta and targets", pose.shape[:-1], goal.shape[:-2])
     pose = np.broadcast_to(pose, (*batch, len(tree)))
     count = np.full(batch, np.inf)
     for n in range(most + 1):

@@ -55,7 +55,9 @@ def bars(
     log: str = "",
     spread: pd.DataFrame | None = None,
 ) -> Still:
-    """Draw a group of bars per row of a table, a bar per column.
+    """Draw a group of bars per row of a table.
+
+    It has a bar per column.
 
     spread  half the length of each whisker, as the table
     """
@@ -72,7 +74,10 @@ def bars(
 
 
 def heat(table: pd.DataFrame, *, title: str, unit: str) -> Still:
-    """Draw a table as squares: orange above 0, blue below, a dot where it is 0."""
+    """Draw a table as coloured squares.
+
+    They are orange above 0, blue below, with a dot where it is 0.
+    """
     values = _numbers(table)
     rows, columns = values.shape
     figure = Figure(figsize=(2.2 + 0.36 * columns, 1.9 + 0.26 * rows), dpi=90, layout="constrained")
@@ -144,7 +149,9 @@ def draw_bars(
     first: int = 0,
     spread: pd.DataFrame | None = None,
 ) -> None:
-    """Draw bars side by side, a bar per group at each label.
+    """Draw a bar per group at each label.
+
+    The bars of a label are side by side.
 
     first  the place of the first group's look among the colours and hatches
     """
@@ -168,7 +175,10 @@ def draw_bars(
 
 
 def draw_heat(axes: Axes, values: Array, rows: Sequence[Any], columns: Sequence[Any]) -> Any:
-    """Draw a matrix in colours, white at 0, its rows and columns named; give the image."""
+    """Draw a matrix in colours, and give the image.
+
+    White is 0. Its rows and columns are named.
+    """
     most = max(float(np.nanmax(abs(values))), ZERO)
     image = axes.imshow(values, cmap=SIGNED, vmin=-most, vmax=most, aspect="auto")
     axes.set_xticks(range(len(columns)), list(map(as_label, columns)), fontsize=8)

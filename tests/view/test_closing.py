@@ -36,7 +36,7 @@ from ikteach.view.tools.replay import Replay
 from ikteach.view.webgl.driver import Driver
 from ikteach.view.webgl.handles import Handles
 from ikteach.view.webgl.targets import Targets
-from ikteach.view.widgets.ball import Ball
+from ikteach.view.widgets.ball import RotationBall
 from ikteach.view.widgets.closing import Living, living, occupant
 from ikteach.view.widgets.curve import Curve
 from ikteach.view.widgets.picture import Picture
@@ -93,7 +93,7 @@ FIGURES: dict[Any, Callable[[], Any]] = {
 
 # Parts of figures: they live as long as what they are in, and have no slot of their own.
 PARTS: dict[Any, Callable[[], Any]] = {
-    Ball: Ball,
+    RotationBall: RotationBall,
     Curve: Curve,
     Driver: lambda: ikteach.view.Scene(*arm(), slot=None).driver,
     Handles: lambda: Targets(ikteach.view.Scene(*arm(), slot=None), [[1, 1, 0]], slot=None).handles,

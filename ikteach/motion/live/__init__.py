@@ -1,1 +1,1 @@
-"""A session that is played: targets, poses and what happened, tick by tick."""
+"""A session that is played: targets, poses and events, tick by tick."""

@@ -1,4 +1,4 @@
-"""What happened in a session, as far back as there is room, and the one way to undo a change."""
+"""The record of a session, as far back as there is room, and the one way to undo a change."""
 
 from collections import deque
 from itertools import islice
@@ -20,7 +20,7 @@ class Change(NamedTuple):
 
     event    as it was noted
     before   how things stood
-    subject  what was changed, to tell whether another change goes on with this one
+    subject  the thing that was changed, to tell whether another change goes on with this one
     """
 
     event: Event
@@ -49,7 +49,10 @@ class History:
         self.ticks.append(moment)
 
     def clear(self) -> None:
-        """Forget all ticks; what is changed next is a change of its own."""
+        """Forget all ticks.
+
+        The next change is then a change of its own.
+        """
         self.ticks.clear()
         self.dropped["ticks"] = 0
         self.settle()
@@ -62,10 +65,11 @@ class History:
     def change(
         self, event: Event, before: Settings, subject: tuple[object, ...], going_on: bool | None
     ) -> None:
-        """Record a change: as a new event, or in place of the one that it goes on with.
+        """Record a change, new or continued.
 
-        It goes on with the last one of the same subject if `going_on`; if that is not known
-        (None), if nothing else happened since, and that only just.
+        It is a new event, or takes the place of the one that it goes on with. It goes on with the
+        last one of the same subject if `going_on`; if that is not known (None), if nothing else
+        happened since, and that only just.
         """
         last = self._changes[-1] if self._open and self._changes else None
         if going_on is None and last is not None:
@@ -87,11 +91,14 @@ class History:
         return self._changes.pop()
 
     def settle(self) -> None:
-        """Have nothing go on: what is changed next is a change of its own."""
+        """End the change that may be going on.
+
+        The next change is then a change of its own.
+        """
         self._open = False
 
     def last(self, count: int | None = None) -> list[Moment]:
-        """Give the last ticks of the record, or all of them, in order."""
+        """Return the last ticks in order, or all."""
         return list(islice(reversed(self.ticks), count))[::-1]
 
     def jitter(self, last: int) -> Array:

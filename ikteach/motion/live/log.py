@@ -1,4 +1,4 @@
-"""What happened in a session, as data that no longer changes."""
+"""The record of a session, as data that no longer changes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -34,7 +34,10 @@ class Event(NamedTuple):
 
 
 class Moment(NamedTuple):
-    """One tick in which poses followed: a row of a `Log`, which says what the names mean."""
+    """One tick in which poses followed.
+
+    It is a row of a `Log`, which says how the names are meant.
+    """
 
     tick: int
     time: float
@@ -67,7 +70,7 @@ class Log:
     error    (T, M, k)  distance to target [m]
     capped   (T, M)     whether the cap shortened the step
     held     (T, M, n)  whether a limit stopped the joint
-    events           what was changed, in order
+    events           the changes, in order
     settings         how the session stood at the end: plain words and numbers, by name
     dropped          how many ticks and events came before these and were not kept
     """
@@ -101,7 +104,10 @@ class Log:
         moments: Sequence[Moment],
         **others: Any,
     ) -> "Log":
-        """Make the log of these moments; `others` are its events, settings and dropped."""
+        """Make the log of these moments.
+
+        `others` are its events, settings and dropped.
+        """
         T, m, n, k = len(moments), len(methods), len(tree), len(effectors)
         shapes = {"targets": (k, 3), "theta": (m, n), "error": (m, k), "capped": (m,)}
         shapes |= {"held": (m, n)}
@@ -118,11 +124,17 @@ class Log:
 
     @property
     def clock(self) -> Array:
-        """Clock time of each tick since the beginning of the run [s], (T,)."""
+        """Clock time of each tick (T,) [s].
+
+        It counts from the beginning of the run.
+        """
         return np.asarray(self.dt * self.tick, dtype=float)
 
     def tracks(self) -> dict[str, Track]:
-        """Give the run of each method, {method: Track}; empty if there is no tick."""
+        """Return the run of each method, {method: Track}.
+
+        It is empty if there is no tick.
+        """
         if not len(self):
             return {}
         return {name: self._track(i) for i, name in enumerate(self.methods)}
@@ -143,7 +155,10 @@ class Log:
         )
 
     def lost(self) -> str:
-        """Say in a sentence how much was dropped; empty if all is there."""
+        """Say in a sentence how much was dropped.
+
+        The sentence is empty if all is there.
+        """
         gone = {what: number for what, number in self.dropped.items() if number}
         if not gone:
             return ""
@@ -152,7 +167,10 @@ class Log:
 
 
 def same_targets(tracks: Mapping[str, Track]) -> list[Track]:
-    """Check that runs {name: Track} can stand in one table: at least one, on the same targets."""
+    """Check that runs can stand in one table.
+
+    They are {name: Track}, at least one, and all on the same targets.
+    """
     if not isinstance(tracks, Mapping):
         raise TypeError(f"runs are {{name: Track}}, as `study.runs` makes, not {shown(tracks)}")
     if not tracks:

@@ -35,9 +35,10 @@ LONG = 400  # letters of an error that the log keeps
 
 
 class Play:
-    """A figure that follows its targets as it is set, tick by tick, and records what happens.
+    """A figure that follows its targets, tick by tick.
 
-    Its options are those of a `Session`, which can also be changed.
+    It moves as it is set, and records all that happens. Its options are those of a `Session`,
+    which can also be changed.
     """
 
     def __init__(
@@ -69,13 +70,17 @@ class Play:
         self._begin()
 
     def note(self, kind: str, **what: Any) -> None:
-        """Put an event into the log: a pause, a remark; nothing else happens."""
+        """Put an event into the log.
+
+        It may be a pause or a remark; nothing else happens.
+        """
         self.history.note(self._event(kind, what))
 
     def reset(self) -> None:
-        """Go back to the rest pose and the beginning of time, with an empty record.
+        """Go back to the rest pose and time zero.
 
-        Settings stay as they are, targets set by hand too. The events go on.
+        The record is then empty. Settings stay as they are, targets set by hand too. The events go
+        on.
         """
         self.note("reset", ticks=self.ticks)
         self.runs += 1
@@ -84,7 +89,10 @@ class Play:
     # Time passes.
 
     def tick(self) -> None:
-        """Let one tick of the clock pass; every `gait.slowdown`-th, time leaps and poses follow."""
+        """Let one tick of the clock pass.
+
+        At every `gait.slowdown`-th, time leaps and poses follow.
+        """
         self._waited += 1
         if self._waited >= self._settings.gait.slowdown:
             try:
@@ -99,7 +107,7 @@ class Play:
         self.ticks += 1
 
     def ahead(self) -> tuple[float, float, float, Array]:
-        """Time, phase, advance and targets after the next leap."""
+        """Return time, phase, advance and targets after the next leap."""
         gait, course = self._settings.gait, self._settings.course
         elapsed = gait.step_frequency * self.dt * max(self._waited, gait.slowdown)
         time = self.time + elapsed
@@ -156,46 +164,59 @@ class Play:
         return self.history.dropped["events"]
 
     def frames_of(self, method: str) -> Frames:
-        """Where the joints are, in the pose of a method."""
+        """Return where the joints are, in the pose of a method."""
         row = self._row(method)
         return Frames(*(part[row] for part in self.frames))
 
     def options_of(self, method: str) -> dict[str, Any]:
-        """The options of `step` for a method."""
+        """Return the options of `step` for a method."""
         return self._settings.options_of(method)
 
     @property
     def error(self) -> Array:
-        """Distance of each effector of the shown method to its target, (k,) [m]."""
+        """Distance of each effector to its target (k,) [m].
+
+        The effectors are those of the shown method.
+        """
         return self._distances()[self._row(self._settings.method)]
 
     def jitter(self, last: int = 1) -> dict[str, Array]:
-        """‖Δ²θ‖ of each method in the last ticks of the record, {name: (≤ last,)} [rad per tick²].
+        """Return ‖Δ²θ‖ of each method in the last ticks.
 
-        Before the first tick of the record the figure is taken to have stood still.
+        They are {name: (≤ last,)} [rad per tick²], of the ticks in the record. Before the first one
+        the figure is taken to have stood still.
         """
         jitter = self.history.jitter(last).reshape(-1, len(self._settings.methods))
         return dict(zip(self._settings.methods, jitter.T, strict=True))
 
     @property
     def floor(self) -> float:
-        """Height of the ground [m]: of a human, that of the lower foot's target."""
+        """Height of the ground [m].
+
+        For a human it is that of the lower foot's target.
+        """
         return self._settings.course.floor
 
     def log(self, last: int | None = None) -> Log:
-        """What happened, or its last ticks, as data that no longer changes."""
+        """Return the run as data that no longer changes.
+
+        It is the whole record, or its last ticks.
+        """
         history, methods = self.history, list(self._settings.methods)
         about = {"events": tuple(self.events), "dropped": dict(history.dropped)}
         about["settings"] = self.settings()
         return Log.of(self.tree, self.effectors, self.dt, methods, history.last(last), **about)
 
     def tracks(self, last: int | None = None) -> dict[str, Track]:
-        """The record, or its last ticks, as {method: Track}; empty before the first tick."""
+        """Return the record as {method: Track}.
+
+        It is the whole record, or its last ticks, and empty before the first tick.
+        """
         ticks, methods = self.history.last(last), list(self._settings.methods)
         return Log.of(self.tree, self.effectors, self.dt, methods, ticks).tracks()
 
     def settings(self) -> dict[str, Any]:
-        """How everything stands, in plain words and numbers."""
+        """Return how everything stands, in plain words and numbers."""
         return {
             "shown": self._settings.method,
             "by_hand": self._settings.by_hand is not None,
@@ -235,7 +256,7 @@ class Play:
         return np.asarray(np.sqrt(np.vecdot(gap, gap)))
 
     def _row(self, method: str) -> int:
-        """The row of a method in whatever has a row for each, (M, ...)."""
+        """Return the row of a method in arrays (M, ...) of all methods."""
         return list(self._settings.methods).index(self._known(method))
 
     def _known(self, method: str) -> str:

@@ -1,7 +1,7 @@
 """A live figure at this moment, and all that can be changed about it.
 
-State lives here and nowhere else. Panels change the session, the scene is told a pose, and neither
-is known to it. What is changed is noted and can be undone; what happens is recorded.
+State lives here and nowhere else. Panels change the session, the scene is given a pose, and neither
+is known to it. Changes are noted and can be undone; ticks are recorded.
 """
 
 from collections.abc import Mapping
@@ -24,11 +24,13 @@ from ikteach.solvers import Solver
 
 
 class Session(Play):
-    """A figure that walks, by every method at once, on the same targets and the same clock.
+    """A figure that walks, by every method at once.
+
+    All methods have the same targets and the same clock.
 
     figure    the human if none is given
     gait      the motion of the targets, a `Gait` or a `Path`; change it with `change(...)` or put
-              another in its place. If none is given, what can walk walks, and any other figure's
+              another in its place. If none is given, a figure that can walk walks, and any other's
               targets go where its own joints would swing them
     methods   {name: solver}, and whatever `methods_of` takes; put another to a name with `use`.
               If none are given, those of `SOLVERS`, with the λ of dls in proportion to the body
@@ -62,7 +64,10 @@ class Session(Play):
             self._change("gait", what, gait=gait, course=course)
 
     def change(self, **parameters: Any) -> None:
-        """Give the gait other parameters; TypeError or ValueError says which one cannot be."""
+        """Give the gait other parameters.
+
+        TypeError or ValueError says which one cannot be.
+        """
         unfit = [name for name in parameters if name not in vars(self.gait)]
         if unfit:
             raise LookupError(unknown("gait parameter", unfit[0], vars(self.gait)))
@@ -74,9 +79,10 @@ class Session(Play):
         return self._settings.methods
 
     def use(self, method: str | Mapping[str, Solver | str], solver: Solver | str = "") -> None:
-        """Put another solver, or the same with other options bound, to the name of a method.
+        """Put another solver to the name of a method.
 
-        Several at once, which are one change, are a {method: solver}.
+        It may be the same solver with other options bound. Several at once, which are one change,
+        are a {method: solver}.
         """
         news = {method: solver} if isinstance(method, str) else method
         solvers = {self._known(name): solver_of(one) for name, one in news.items()}
@@ -95,7 +101,10 @@ class Session(Play):
         return self._settings.method
 
     def show(self, method: str) -> None:
-        """Show the pose of `method`; LookupError for a name that is not among the methods."""
+        """Show the pose of `method`.
+
+        LookupError for a name that is not among the methods.
+        """
         if self._known(method) != self.method:
             self._change("method", {"shown": method}, going_on=False, method=method)
 
@@ -105,7 +114,10 @@ class Session(Play):
         return self._settings.options
 
     def adjust(self, **options: Any) -> None:
-        """Set options of `step` for all methods; the errors are those of `step`."""
+        """Set options of `step` for all methods.
+
+        The errors are those of `step`.
+        """
         check_options(options)
         new = {**self.options, **options}
         self._try(self.method, self.methods[self.method], new)
@@ -117,7 +129,10 @@ class Session(Play):
         return self._settings.caps
 
     def bound(self, caps: Mapping[str, float | None]) -> None:
-        """Give methods step caps of their own [rad], None for no cap; {}: all by `options`."""
+        """Give methods step caps of their own [rad].
+
+        None is no cap; with {} all go by `options`.
+        """
         for method, cap in caps.items():
             known = self._known(method)
             self._try(known, self.methods[known], {**self.options, "max_step": cap})
@@ -125,7 +140,10 @@ class Session(Play):
 
     @property
     def by_hand(self) -> bool:
-        """Whether the targets are set by hand and not by the gait."""
+        """Whether the targets are set by hand.
+
+        Otherwise the gait sets them.
+        """
         return self._settings.by_hand is not None
 
     @by_hand.setter
@@ -135,7 +153,9 @@ class Session(Play):
             self._change("by hand", {"by_hand": bool(by_hand)}, going_on=False, by_hand=at)
 
     def aim(self, which: int | str, position: ArrayLike, *, going_on: bool = False) -> None:
-        """Put the target of an effector, by its name or number, to a position (3,) [m].
+        """Put the target of an effector to a position.
+
+        The effector goes by its name or number, the position is (3,) [m].
 
         From then on the targets are set by hand. `going_on` says that it is still the same move of
         the mouse, which is one event and is undone as one. LookupError, ValueError.
@@ -155,7 +175,10 @@ class Session(Play):
         self._change("target", what, (name,), going_on=going_on, by_hand=frozen(targets))
 
     def undo(self) -> Event:
-        """Take the last change back, and say which it was; LookupError if there is none."""
+        """Take the last change back, and return its event.
+
+        LookupError if there is none.
+        """
         change = self.history.undo()
         self._settings = change.before
         self._retarget()
@@ -173,7 +196,7 @@ class Session(Play):
         going_on: bool | None = None,
         **settings: Any,
     ) -> None:
-        """Replace these settings, and note it: `History.change` knows what goes on with what."""
+        """Replace these settings, and note it: `History.change` knows which goes on with which."""
         before, event = self._settings, self._event(kind, what)
         self._settings = replace(before, **settings)
         self._retarget()
@@ -191,5 +214,5 @@ class Session(Play):
         return int(which)
 
     def _try(self, method: str, solver: Solver, options: Mapping[str, Any]) -> None:
-        """Take a step that changes nothing, so that what cannot be is refused at once."""
+        """Take a step that changes nothing, so that settings that cannot be are refused at once."""
         step(self.tree, self.theta[method], self.effectors, self.targets, solver, **options)

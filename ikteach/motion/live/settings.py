@@ -1,4 +1,4 @@
-"""All that can be set about a session, what it is at first, and the same in plain words."""
+"""All that can be set about a session, as it is at first, and the same in plain words."""
 
 import inspect
 from collections.abc import Iterable, Mapping
@@ -41,7 +41,9 @@ SESSION = (
 
 @dataclass(frozen=True, eq=False)
 class Settings:
-    """All that can be set about a session, and that undo puts back.
+    """All that can be set about a session.
+
+    It is also all that undo puts back.
 
     gait     the motion of the targets, and
     course   the same in the place and size of the body
@@ -66,7 +68,10 @@ class Settings:
         return {**self.options, **own}
 
     def options_of_all(self) -> dict[str, Any]:
-        """Give the options of one `step` of all methods M, where max_step is (M,) [rad] or None."""
+        """Return the options of one `step` of all methods.
+
+        For M methods max_step is (M,) [rad] or None.
+        """
         caps = [self.options_of(name).get("max_step") for name in self.methods]
         if all(cap is None for cap in caps):
             return {**self.options, "max_step": None}
@@ -74,7 +79,10 @@ class Settings:
 
 
 def figure_of(value: Any) -> Figure:
-    """Check a figure, or a pair of its parts; TypeError or ValueError says why it is none."""
+    """Check a figure, or a pair of its parts.
+
+    TypeError or ValueError says why it is none.
+    """
     if value is None:
         return human()
     if not (isinstance(value, tuple) and len(value) == 2):
@@ -94,10 +102,11 @@ def figure_of(value: Any) -> Figure:
 
 
 def motion_of(tree: Tree, effectors: Effectors, gait: Any = None) -> tuple[Gait | Path, Course]:
-    """Give a motion, or the usual one of this figure, and the same as the figure has it.
+    """Return a motion, and its course for this figure.
 
-    What can walk walks, and the targets of any other figure go where its own joints would swing
-    them. TypeError for what is no motion, ValueError for one of other effectors.
+    If none is given, it is the usual motion of the figure: one that can walk walks, and the targets
+    of any other go where its own joints would swing them. TypeError for anything but a motion,
+    ValueError for a motion of other effectors.
     """
     if gait is None:
         walks = set(effectors.names) == set(LIMBS) or stature(tree, effectors)
@@ -108,14 +117,20 @@ def motion_of(tree: Tree, effectors: Effectors, gait: Any = None) -> tuple[Gait 
 
 
 def usual_methods(tree: Tree, effectors: Effectors) -> dict[str, Solver]:
-    """Give the four methods, with the λ of dls in proportion to the body: a length per radian."""
+    """Return the four methods.
+
+    The λ of dls is in proportion to the body: a length per radian.
+    """
     known = stature(tree, effectors)
     size = known[0] if known else extent(tree, effectors).radius / extent(*human()).radius
     return {**SOLVERS, **({} if size == 1 else {"dls": partial(dls, damping=DAMPING * size)})}
 
 
 def check_options(options: Mapping[str, Any], known: Iterable[str] = ()) -> None:
-    """LookupError for the first that is neither an option of `step` nor one of these names."""
+    """Check the names of options.
+
+    LookupError for the first that is neither an option of `step` nor one of these names.
+    """
     names = [*known, *OPTIONS]
     for name in options:
         if name not in names:
@@ -123,15 +138,19 @@ def check_options(options: Mapping[str, Any], known: Iterable[str] = ()) -> None
 
 
 def try_options(tree: Tree, effectors: Effectors, options: Mapping[str, Any]) -> None:
-    """Take a step to where the figure is; the errors are those of `step`."""
+    """Take a step to where the figure is.
+
+    The errors are those of `step`.
+    """
     at = locate(forward(tree, tree.rest), effectors)
     step(tree, tree.rest, effectors, at, transpose, **options)
 
 
 def in_words(value: Any) -> Any:
-    """Give settings as a file can hold them: numbers, words, lists and dictionaries of them.
+    """Write settings as a file can hold them.
 
-    A function becomes its name, one with bound options {"function": name, option: value}.
+    A file holds numbers, words, lists and dictionaries of them. A function becomes its name, one
+    with bound options {"function": name, option: value}.
     """
     if isinstance(value, Mix):
         return {"function": "mix", **in_words(value.methods)}

@@ -25,7 +25,10 @@ SEARCH = 105  # poses of the back that are looked at, half a degree apart
 
 
 class Package(NamedTuple):
-    """Degrees of motion that reach together, three in CS 490; `side` is "l" (left) or "r"."""
+    """Degrees of motion that reach together.
+
+    They are three in CS 490; `side` is "l" (left) or "r".
+    """
 
     name: str
     side: str
@@ -54,9 +57,10 @@ def degrees(tree: Tree) -> tuple[str, ...]:
 
 
 def coupling(tree: Tree) -> Array:
-    """C (n, d), 1 where row i of the tree is turned by degree of motion j, else 0.
+    """Return C (n, d), from degrees of motion to rows.
 
-    The angles of the rows are θ = C q, and the Jacobian of the degrees is J C.
+    It is 1 where row i of the tree is turned by degree of motion j, else 0. The angles of the rows
+    are θ = C q, and the Jacobian of the degrees is J C.
     """
     names = degrees(tree)
     C = np.zeros((len(tree), len(names)))
@@ -72,7 +76,10 @@ def _degree(row: str) -> str:
 
 
 class ReachingFigure:
-    """The simulator's figure with what its arms are: lengths [m], rows, degrees of motion."""
+    """The simulator's figure and its arms.
+
+    Of the arms it has the lengths [m], rows and degrees of motion.
+    """
 
     def __init__(self) -> None:
         self.tree, _ = simulator()
@@ -88,31 +95,37 @@ class ReachingFigure:
 
     @cached_property
     def rows(self) -> Index:
-        """For each degree of motion the first row that it turns, (d,)."""
+        """The first row of each degree of motion, (d,).
+
+        It is the first of those that the degree turns.
+        """
         return np.asarray(self.C.argmax(axis=0))
 
     def columns(self, names: tuple[str, ...]) -> Array:
-        """Find the columns of C of these degrees of motion, (n, 3) for three."""
+        """Return these degrees' columns of C.
+
+        They are (n, 3) for three degrees of motion.
+        """
         return self.C[:, [self.degrees.index(name) for name in names]]
 
     def arm(self, side: str) -> Index:
-        """Find the rows of φ, a and b."""
+        """Return the rows of φ, a and b."""
         names = f"shoulder.y.{side}", f"shoulder.x.{side}", f"elbow.{side}"
         return np.array([self.tree.index(name) for name in names])
 
     def shoulder(self, side: str) -> Array:
-        """Where the shoulder is in the frame of the chest, (3,) [m]."""
+        """Return the shoulder's place in the frame of the chest, (3,) [m]."""
         return self.tree.offsets[self.tree.index(f"shoulder.y.{side}")]
 
 
 def about_x(angle: ArrayLike, v: Array) -> Array:
-    """v (..., 3) turned about the x axis by `angle` (...)."""
+    """Turn v (..., 3) about the x axis by `angle` (...)."""
     c, s = np.cos(angle), np.sin(angle)
     x, y, z = np.moveaxis(v, -1, 0)
     return np.stack(np.broadcast_arrays(x, c * y - s * z, s * y + c * z), axis=-1)
 
 
-def places(point: ArrayLike) -> Array:
+def points(point: ArrayLike) -> Array:
     """Check that these are points (..., 3), finite."""
     array = numbers("a point", point)
     if array.shape[-1:] != (3,) or not np.isfinite(array).all():
@@ -121,26 +134,31 @@ def places(point: ArrayLike) -> Array:
 
 
 def in_chest(body: ReachingFigure, point: ArrayLike, back: ArrayLike) -> Array:
-    """Find the point (..., 3) seen from the chest, the back turned by s = `back` (...)."""
+    """Turn a point (..., 3) into the chest's frame.
+
+    The back is turned by s = `back` (...).
+    """
     back = numbers("back", back)
-    low = about_x(-back, places(point) - [0, body.waist, 0])
+    low = about_x(-back, points(point) - [0, body.waist, 0])
     return about_x(-back, low - [0, body.segment, 0])
 
 
 def by_columns(body: ReachingFigure, theta: ArrayLike, package: Package) -> Array:
-    """J (..., 3, 3) of a package at pose θ (..., n), from the geometric columns, J C."""
+    """Return J (..., 3, 3) of a package at θ (..., n), from the geometric columns, J C."""
     J = jacobian(body.tree, forward(body.tree, theta), body.hands[package.side])
     return J @ body.columns(package.degrees)
 
 
 def by_differences(body: ReachingFigure, theta: ArrayLike, package: Package) -> Array:
-    """J (..., 3, 3) of a package at pose θ (..., n), from central differences."""
+    """Return J (..., 3, 3) of a package at pose θ (..., n), from central differences."""
     J = partials.by_differences(body.tree, theta, body.hands[package.side])
     return J @ body.columns(package.degrees)
 
 
 def by_hand(body: ReachingFigure, theta: ArrayLike, package: Package) -> Array:
-    """J (..., 3, 3) of a package at pose θ (..., n), from partial derivatives worked out by hand.
+    """Write out the Jacobian of a package.
+
+    J (..., 3, 3) at pose θ (..., n), from partial derivatives worked out by hand.
 
     ∂r/∂a = −y,  ∂y/∂a = r,  ∂r/∂b = L₂ cos (a + b),  ∂y/∂b = L₂ sin (a + b), and for the back
     with hand h seen from the chest, height u of its lower segment:
@@ -177,7 +195,7 @@ def by_hand(body: ReachingFigure, theta: ArrayLike, package: Package) -> Array:
 
 
 def arm_reaches(body: ReachingFigure, side: str, point: ArrayLike, back: ArrayLike) -> Mask:
-    """Whether φ, a and b within their limits put the hand to point (..., 3): (...).
+    """Check whether φ, a and b within limits reach point (..., 3): (...).
 
     `back` (...) is the angle s of the back. The elbow follows from the law of cosines, the rest
     from two arcs of tangent; an arm turned round by half a turn is the other way to get there.
@@ -204,16 +222,17 @@ def _allowed(body: ReachingFigure, side: str, angles: Array) -> Mask:
 
 
 def back_angles(body: ReachingFigure) -> Array:
-    """Find the angles s of the back from limit to limit, (SEARCH,)."""
+    """Return the angles s of the back from limit to limit, (SEARCH,)."""
     return np.linspace(body.tree.lower[body.back], body.tree.upper[body.back], SEARCH)
 
 
 def back_reaches(body: ReachingFigure, side: str, point: ArrayLike) -> Mask:
-    """Whether shoulder and back put the hand to point (..., 3), the elbow being at rest: (...).
+    """Check whether shoulder and back reach point (..., 3).
 
-    The arm is then as long as it is; the back has to bring the shoulder to just that distance.
+    The answer is (...), True where they put the hand there, the elbow being at rest. The arm then
+    keeps its length; the back has to bring the shoulder to just that distance.
     """
-    s, point = back_angles(body), places(point)
+    s, point = back_angles(body), points(point)
     v = in_chest(body, point[..., None, :], s) - body.shoulder(side)
     bend = body.tree.rest[body.arm(side)[2]]
     length = np.sqrt(body.L1**2 + body.L2**2 + 2 * body.L1 * body.L2 * np.cos(bend))
@@ -224,13 +243,16 @@ def back_reaches(body: ReachingFigure, side: str, point: ArrayLike) -> Mask:
 
 
 def both_reach(body: ReachingFigure, side: str, point: ArrayLike) -> Mask:
-    """Whether some pose of arm and back together puts the hand to point (..., 3): (...)."""
-    point = places(point)[..., None, :]
+    """Check whether arm and back reach point (..., 3).
+
+    The answer is (...), True where some pose of both together puts the hand there.
+    """
+    point = points(point)[..., None, :]
     return np.asarray(arm_reaches(body, side, point, back_angles(body)).any(axis=-1))
 
 
 def backs_reach(body: ReachingFigure, cursor: ArrayLike) -> Mask:
-    """`back_reaches` for both sides, right first: (..., 2) for cursor (..., 3)."""
+    """Return `back_reaches` for both sides, right first: (..., 2) for cursor (..., 3)."""
     return np.stack([back_reaches(body, side, cursor) for side in "rl"], axis=-1)
 
 
@@ -243,7 +265,7 @@ def choose(
     its shoulder; else arm and back do where they reach; in the middle nothing does. `backs` is
     `backs_reach` of the cursor where it is known already: it does not depend on the pose.
     """
-    cursor = places(cursor)
+    cursor = points(cursor)
     backs = backs_reach(body, cursor) if backs is None else backs
     arms = np.stack([arm_reaches(body, side, cursor, back) for side in "rl"], axis=-1)
     x = cursor[..., 0]
@@ -253,10 +275,11 @@ def choose(
 
 
 def look(body: ReachingFigure, cursor: ArrayLike, back: ArrayLike, eyes: float = 0.15) -> Array:
-    """Find the nod (...) of the neck that turns the face to cursor (..., 3), within its limits.
+    """Return the nod (...) that turns the face to the cursor.
 
-    Trigonometry alone: the eyes are so far above the neck [m], and their line of sight, at right
-    angles to it, is to meet the cursor. The head does not turn sideways.
+    The cursor is (..., 3), and the neck stays within its limits. It is trigonometry alone: the
+    eyes are at height `eyes` [m] above the neck, and their line of sight, at right angles to it,
+    is to meet the cursor. The head does not turn sideways.
     """
     v = in_chest(body, cursor, back) - body.tree.offsets[body.neck]
     y, z = v[..., 1], v[..., 2]

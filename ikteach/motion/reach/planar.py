@@ -26,9 +26,10 @@ ROOM = np.array([[-1.3, -1.0, 0.0], [1.3, 1.3, 0.0]])  # where a cursor can be [
 
 
 def square(figure: Figure, theta: Array, J: Array, e: Array) -> tuple[Array, Array]:
-    """J (3, 3) and e (3,) with the direction of the last link in place of the empty row of z.
+    """Fill the empty row of z in J and e.
 
-    J (3, 3), e (3,) are the hand's, at pose θ (3,) of an arm that stands at the origin.
+    The direction of the last link goes there. J (3, 3) and e (3,), before and after, are of the
+    hand, at pose θ (3,) of an arm that stands at the origin.
     """
     x, y, _ = e + locate(forward(figure.tree, theta), figure.effectors)[0]
     turn = _wrapped(np.arctan2(y, x) - theta.sum())
@@ -36,9 +37,10 @@ def square(figure: Figure, theta: Array, J: Array, e: Array) -> tuple[Array, Arr
 
 
 def arrives(figure: Figure, cursor: Array) -> bool:
-    """Whether three links can put the hand to cursor (3,), the last one pointing from the origin.
+    """Check whether three links can put the hand to cursor.
 
-    The law of cosines for two links, with the elbow to either side, within the limits.
+    The cursor is (3,) [m], and the last link points from the origin. By the law of cosines
+    for two links, with the elbow to either side, within the limits.
     """
     tree = figure.tree
     L1, L2, L3 = *tree.offsets[1:, 0], figure.effectors.offsets[0, 0]
@@ -59,7 +61,9 @@ def _wrapped(angle: Array) -> Array:
 
 
 class PlanarReach(Reaching):
-    """An arm in the plane z = 0; `links` is 3, 2 or 1, and Cramer's rule is for three.
+    """An arm in the plane z = 0 that reaches.
+
+    `links` is 3, 2 or 1, and Cramer's rule is for three.
 
     Its ways are solvers. It can be shown by the same widget as `Reach`.
     """
@@ -87,12 +91,15 @@ class PlanarReach(Reaching):
 
     @property
     def within(self) -> bool:
-        """Whether the hand can be at the cursor with all that the shown method wishes."""
+        """Whether the hand can be at the cursor.
+
+        It counts with all that the shown method wishes.
+        """
         return self._aimed if self.method == "cramer" else self._somehow
 
     @property
     def words(self) -> str:
-        """What white or red means here, in words."""
+        """The meaning of white or red here, in words."""
         if self.within:
             return "within reach of the arm"
         return "out of reach" + (" with the last link pointing outward" if self._somehow else "")

@@ -50,10 +50,12 @@ LOOK_EVERY = 10  # ticks
 
 
 def period(poses: ArrayLike, longest: int = LONGEST) -> Index:
-    """After how many ticks the poses (T, ..., n) repeat themselves at the end, (...); 0: not.
+    """Return the period of poses at their end, in ticks.
+
+    The poses are (T, ..., n), the periods (...), 0 where poses do not repeat themselves.
 
     The last p ≥ 2 ticks have to be the p before them, to a tenth of how far they range, and to
-    range over more than `SWAY`. The smallest such p is told.
+    range over more than `SWAY`. The smallest such p is returned.
     """
     poses = numbers("poses", poses)
     found = np.zeros(poses.shape[1:-1], dtype=np.intp)
@@ -66,7 +68,7 @@ def period(poses: ArrayLike, longest: int = LONGEST) -> Index:
 
 
 class Standing:
-    """How one way stands with the cursor where it is now.
+    """The standing of one way since the cursor moved.
 
     ticks    since the cursor moved
     arrived  the tick since which the hand has been within a centimetre, or None
@@ -87,7 +89,10 @@ class Standing:
         self.poses: deque[Array] = deque([self.tick.theta], maxlen=2 * LONGEST)
 
     def take(self, tick: Tick, besides: int | None = None) -> None:
-        """Note what one more tick did; `besides` is a joint whose steps do not count."""
+        """Note the outcome of one more tick.
+
+        `besides` is a joint whose steps do not count.
+        """
         turned = abs(tick.theta - self.tick.theta)
         if besides is not None:
             turned[besides] = 0
@@ -138,7 +143,9 @@ def placed(cursor: ArrayLike, room: Array) -> Array:
 
 
 class Reaching:
-    """A figure that reaches for a cursor, by every way at once; one of them is shown.
+    """A figure that reaches for a cursor, by every way.
+
+    All ways reach at once, and one of them is shown.
 
     cursor    (3,) [m]; move it with `put` or `move`
     ways      {name: way}
@@ -148,7 +155,8 @@ class Reaching:
     room      (2, 3) corners of where the cursor can be [m]
     standing  {name: Standing}
 
-    A subclass says what can be reached (`_look`) and how a way goes one step on (`_advance`).
+    A subclass says which cursors can be reached (`_look`), and how a way goes one step on
+    (`_advance`).
     """
 
     tree: Tree
@@ -173,12 +181,18 @@ class Reaching:
         self.reset()
 
     def show(self, method: str) -> None:
-        """Show the pose of `method`; LookupError for a name that is not among the ways."""
+        """Show the pose of `method`.
+
+        LookupError for a name that is not among the ways.
+        """
         self.ways[method]
         self.method = method
 
     def reset(self) -> None:
-        """Back to the rest pose and to where the cursor was at first."""
+        """Go back to the rest pose.
+
+        The cursor goes back to where it was at first.
+        """
         nothing = np.asarray(np.nan)
         rest = Tick(self.tree.rest, np.asarray(NONE), nothing, nothing, nothing, nothing)
         self.ticks = 0
@@ -186,7 +200,10 @@ class Reaching:
         self.put(self._start)
 
     def put(self, cursor: ArrayLike) -> None:
-        """Put the cursor to (3,) [m], or to the nearest place in the room; ValueError if unfit."""
+        """Put the cursor to (3,) [m].
+
+        It stays in the room: the nearest place in it is taken. ValueError if unfit.
+        """
         self.cursor = placed(cursor, self.room)
         self._look()
         for one in self.standing.values():
@@ -197,7 +214,10 @@ class Reaching:
         self.put(self.cursor + placed(by, EVERYWHERE))
 
     def tick(self) -> None:
-        """Let one tick of the clock pass: every way goes one step on."""
+        """Let one tick of the clock pass.
+
+        Every way goes one step on.
+        """
         done = {name: self._advance(name) for name in self.ways}
         self.ticks += 1
         for name, tick in done.items():  # only now: a solver that fails changes nothing
@@ -215,16 +235,19 @@ class Reaching:
 
     @property
     def within(self) -> bool:
-        """Whether the shown method has something that reaches the cursor: white, else red."""
+        """Whether the shown method can reach the cursor.
+
+        The method then has a package, or an arm, that reaches it. White means yes, red no.
+        """
         raise NotImplementedError
 
     @property
     def words(self) -> str:
-        """What white or red means here, in words."""
+        """The meaning of white or red here, in words."""
         raise NotImplementedError
 
     def _look(self) -> None:
-        """Find out what can reach the cursor where it is now."""
+        """Find out which hands or packages reach the cursor now."""
         raise NotImplementedError
 
     def _advance(self, name: str) -> Tick:
@@ -233,7 +256,10 @@ class Reaching:
 
 
 class Reach(Reaching):
-    """The figure of CS 490, which reaches with the hand on the cursor's side; `ways` are `Way`s."""
+    """The figure of CS 490, reaching.
+
+    It reaches with the hand on the cursor's side; `ways` are `Way`s.
+    """
 
     def __init__(
         self,
@@ -261,13 +287,16 @@ class Reach(Reaching):
 
     @property
     def within(self) -> bool:
-        """Whether the shown method has something that reaches the cursor: white, else red."""
+        """Whether the shown method can reach the cursor.
+
+        The method then has a package, or an arm, that reaches it. White means yes, red no.
+        """
         way = self.ways[self.method]
         return self._package(way) != NONE if way.packaged else self._arms[self.side]
 
     @property
     def words(self) -> str:
-        """What white or red means here, in words."""
+        """The meaning of white or red here, in words."""
         way, side = self.ways[self.method], {"r": "right", "l": "left"}[self.side]
         if not way.packaged:
             what = f"the {side} arm and back together"
@@ -300,7 +329,9 @@ class Reach(Reaching):
 
 
 class Trial(NamedTuple):
-    """How runs from the rest pose to cursors (...) that stand still have ended.
+    """The ends of runs from rest to cursors (...).
+
+    The cursors stand still.
 
     distance  (...)  from hand to cursor at the end [m]
     ticks     (...)  after which the hand came within a centimetre and stayed; -1: it did not
@@ -332,9 +363,10 @@ def trial(
     parts: int = PARTS,
     max_step: float | None = MAX_STEP,
 ) -> Trial:
-    """Reach for each of the cursors (..., 3) [m] from rest, for so many ticks, and see how it ends.
+    """Reach for cursors (..., 3) [m] from rest.
 
-    Runs that have come to rest are not followed further: they would stay.
+    Each run takes `ticks` ticks, and its end is returned. Runs that have come to rest are not
+    followed further: they would stay.
     """
     cursors, ticks = numbers("the cursors", cursors), count_of("ticks", ticks)
     if cursors.shape[-1:] != (3,) or not np.isfinite(cursors).all():
@@ -351,15 +383,8 @@ def trial(
     for tick in range(1, ticks + 1):
         if not len(left):
             break
-        done = advance(
-            body,
-            poses[left],
-            goals[left],
-            way,
-            parts=parts,
-            max_step=max_step,
-            backs=backs[left],
-        )
+        at, goal, back = poses[left], goals[left], backs[left]
+        done = advance(body, at, goal, way, parts=parts, max_step=max_step, backs=back)
         turned = abs(done.theta - poses[left])
         turned[:, body.neck] = 0
         moves = turned.max(axis=-1)
@@ -385,9 +410,10 @@ def trial(
 
 
 def reachable_cursors(body: ReachingFigure, count: int, seed: int = 0) -> Array:
-    """So many places (count, 3) [m] where a hand can be: hands of random poses within the limits.
+    """Draw places (count, 3) [m] that a hand can reach.
 
-    Every one can be reached by arm and back of the side that it lies on, if not by a package.
+    They are hands of random poses within the limits. Each can be reached by arm and back of the
+    side that it lies on, if not by a package.
     """
     rng, tree = np.random.default_rng(seed), body.tree
     count_of("the number of cursors", count, least=0)

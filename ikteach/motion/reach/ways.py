@@ -17,7 +17,7 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Index, Mask
 from ikteach.body import forward, locate
-from ikteach.checks import function, numbers, shown, together
+from ikteach.checks import common_batch, function, numbers, shown
 from ikteach.checks import number as a_number
 from ikteach.motion.reach.packages import (
     NONE,
@@ -45,24 +45,35 @@ RestRule = Callable[[Array, Array], Array]
 
 
 def here(body: ReachingFigure, theta: Array) -> Array:
-    """Choose packages by where the cursor is seen from the shoulder as it stands now."""
+    """Choose packages as seen from the shoulder now.
+
+    They go by where the cursor is from the shoulder as it stands.
+    """
     return theta[..., body.back]
 
 
 def at_rest(body: ReachingFigure, theta: Array) -> Array:
-    """Choose packages by where the cursor is seen from the shoulder at rest."""
+    """Choose packages as seen from the shoulder at rest.
+
+    They go by where the cursor is from there.
+    """
     return np.broadcast_to(body.tree.rest[body.back], theta.shape[:-1])
 
 
 def after_solve(J: Array, wish: Array) -> Array:
-    """Joints go to rest as they wish (..., d), whatever that does to the hand (CS 490)."""
+    """Let joints go to rest as they wish (..., d).
+
+    The hand goes with them, wherever that takes it (CS 490).
+    """
     return wish
 
 
 def null_space(J: Array, wish: Array) -> Array:
-    """(I − J⁺J) wish (..., d): as much of the wish as leaves the hand where it is, to first order.
+    """Project a wish (..., d) into the null space: (I − J⁺J) wish.
 
-    J (..., 3, d). What the other joints can make up for is done, the rest is left.
+    It leaves the hand where it is, to first order.
+
+    J (..., 3, d). A part of the wish that other joints can make up for is done, the rest is left.
     """
     _, sigma, Vt = np.linalg.svd(J, full_matrices=False)
     kept = sigma > WEAK * sigma[..., :1]
@@ -71,7 +82,7 @@ def null_space(J: Array, wish: Array) -> Array:
 
 @dataclass(frozen=True)
 class Way:
-    """How the figure reaches: a method and what is around it.
+    """A method of reaching, and the rules around it.
 
     solver    a function of (J, e); with `packaged` of the three joints of a package
     packaged  True: CS 490's packages; False: arm and back together, four degrees of motion
@@ -90,7 +101,10 @@ class Way:
 
 
 class Ways(dict[str, Way]):
-    """Ways by name; an unknown name is answered with what it may have meant."""
+    """Ways by name.
+
+    An unknown name is answered with the names that may have been meant.
+    """
 
     @classmethod
     def of(cls, ways: Mapping[str, Way]) -> "Ways":
@@ -117,7 +131,7 @@ WAYS = Ways(
 
 
 class Tick(NamedTuple):
-    """What one tick did to a batch of figures.
+    """The outcome of one tick for a batch of figures.
 
     theta         (..., n)  the new pose [rad]
     package       (...)     number of the package in use, NONE (-1) for none; without packages
@@ -146,9 +160,11 @@ def advance(
     max_step: float | None = MAX_STEP,
     backs: Mask | None = None,
 ) -> Tick:
-    """One tick from pose θ (..., n) towards cursor (..., 3) [m], by one way, for a whole batch.
+    """Take one tick towards cursor (..., 3) [m], by one way.
 
-    parts     n of CS 490: a tick goes 1/n of what is left
+    It starts from pose θ (..., n), for a whole batch.
+
+    parts     n of CS 490: a tick goes 1/n of the rest of the way
     max_step  [rad]; no joint turns further in a tick (but for the neck, which just looks)
     backs     `backs_reach` of the cursor (..., 2), where it is known already
     ValueError if a shape is wrong, a number not finite, or `parts` is below 1.
@@ -156,7 +172,7 @@ def advance(
     theta, cursor = _checked(body, theta, cursor)
     checked_way(way)
     checked_parts(parts)
-    shape = together("theta and the cursor", theta.shape[:-1], cursor.shape[:-1])
+    shape = common_batch("theta and the cursor", theta.shape[:-1], cursor.shape[:-1])
     poses = np.broadcast_to(theta, (*shape, theta.shape[-1])).reshape(-1, theta.shape[-1]).copy()
     cursors = np.broadcast_to(cursor, (*shape, 3)).reshape(-1, 3)
     known = None if backs is None else np.broadcast_to(backs, (*shape, 2)).reshape(-1, 2)
@@ -179,7 +195,10 @@ def advance(
 
 
 def checked_parts(parts: int) -> int:
-    """Check the number of parts that the error is divided into."""
+    """Check the number of parts of the error.
+
+    The error is divided into them; ValueError for less than 1.
+    """
     if not a_number("the number of parts", parts) >= 1:
         raise ValueError(f"the error is divided into 1 part or more, not {shown(parts)}")
     return parts
@@ -195,14 +214,17 @@ def checked_way(way: Way, name: str = "way") -> Way:
 def which(
     body: ReachingFigure, theta: Array, cursor: Array, way: Way, backs: Mask | None = None
 ) -> Index:
-    """Find the number of the package in use (...), or of the side where the way has no packages."""
+    """Return the number of the package in use (...).
+
+    Where the way has no packages, it is that of the side.
+    """
     if way.packaged:
         return choose(body, cursor, way.origin(body, theta), backs)
     return np.where(cursor[..., 0] < 0, 0, 1)
 
 
 def hands(body: ReachingFigure, theta: Array, cursor: Array) -> Array:
-    """Where the hand on the cursor's side is, (..., 3) [m]."""
+    """Return where the hand on the cursor's side is, (..., 3) [m]."""
     frames = forward(body.tree, theta)
     right, left = (locate(frames, body.hands[side])[..., 0, :] for side in "rl")
     return np.where(cursor[..., :1] < 0, right, left)
@@ -228,7 +250,10 @@ def _reach(
     idle = homewards(body, theta, besides=package.degrees if way.packaged else ())
 
     def solve(J: Array, e: Array) -> Array:
-        """Δθ of the method on the degrees in use, with the way to rest of the others in it."""
+        """Solve for Δθ on the degrees in use.
+
+        The method answers for them, and the way to rest of the others is added.
+        """
         ours = J @ used
         far = np.linalg.norm(e, axis=-1) > NEAR
         if way.packaged:  # and where det is near 0 the package takes no step
@@ -250,7 +275,7 @@ def _reach(
 
 
 def figures_of(J: Array, packaged: bool) -> Array:
-    """det, independence and smallest σ of J (..., 3, m) in use: (3, ...); see `Tick`."""
+    """Return det, independence and smallest σ of J (..., 3, m) in use: (3, ...); see `Tick`."""
     sigma = np.linalg.svdvals(J)
     if packaged:
         return np.stack([determinant(J), independence(J), sigma[..., -1]])
@@ -259,15 +284,18 @@ def figures_of(J: Array, packaged: bool) -> Array:
 
 
 def arm_and_back(side: str) -> Package:
-    """Arm and back in one, four degrees of motion: what the general methods reach with."""
+    """Join arm and back into one package.
+
+    It has four degrees of motion; the general methods reach with it.
+    """
     arm, back = PACKAGES["rl".index(side)], "back"
     return Package(f"{arm.name} and back together", side, (*arm.degrees, back))
 
 
 def homewards(body: ReachingFigure, theta: Array, besides: tuple[str, ...] = ()) -> Array:
-    """Find the wish (..., d) of every degree of motion to go to rest, by at most `EASE`.
+    """Return the wish (..., d) of all degrees to rest.
 
-    Those named in `besides`, and the neck, wish nothing.
+    Each wishes a step of at most `EASE`. Those named in `besides`, and the neck, wish nothing.
     """
     wish = np.clip(body.tree.rest - theta, -EASE, EASE)[..., body.rows]
     for name in (*besides, "neck"):

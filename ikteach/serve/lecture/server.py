@@ -182,7 +182,7 @@ class Channels(PlainErrors, VoilaKernelWebsocketHandler):  # type: ignore[misc]
         await super().open(kernel_id)
 
     def on_message(self, frame: bytes | str) -> None:
-        """Pass on what is a message and permitted."""
+        """Pass on a frame that is a permitted message."""
         if not self._paid(len(frame)):
             return
         try:
@@ -306,7 +306,7 @@ class Lecture(Voila):  # type: ignore[misc]
         return f"http://{host}:{self.port}{self.base_url}?token={self.token}"
 
     def setup_template_dirs(self) -> None:
-        """Our look goes before that of Voilà, which it extends."""
+        """Put our look before that of Voilà, which it extends."""
         super().setup_template_dirs()
         self.template_paths.insert(0, str(TEMPLATES))
 

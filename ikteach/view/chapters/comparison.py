@@ -12,7 +12,7 @@ from ikteach.motion.gait import stature
 from ikteach.motion.live.session import Session
 from ikteach.motion.live.settings import SESSION, check_options
 from ikteach.motion.methods import Methods
-from ikteach.view.chapters.gait import table
+from ikteach.view.chapters.gait import session_table
 from ikteach.view.live.live import Live
 from ikteach.view.live.panel import Does, Panel, button, choice, slider
 from ikteach.view.live.strips import SECONDS, Strips
@@ -27,14 +27,16 @@ CAP = (0.5, 180.0)  # from, to [degrees per step]
 
 
 class Race(Live):
-    """Figures that follow the same targets at the same moment, each by its own method.
+    """Figures that follow the same targets, one per method.
+
+    All follow them at the same moment, each by its own method.
 
     methods  {name: solver}, or solvers and their names in a list, or one of them alone; the four
              of the course if none are given
     degrees  the step cap of all [degrees per step]
     options  go to `Session`: the figure (a human if none is given), its gait or path, and so on
 
-    Display it in a notebook. `session` holds all state; `values` is what the controls say.
+    Display it in a notebook. `session` holds all state; `values` are those of the controls.
     """
 
     def __init__(
@@ -85,7 +87,10 @@ class Race(Live):
 
     @property
     def words(self) -> str:
-        """Say who is how far from the targets, on average of the last seconds."""
+        """The figures, and how far each is from the targets.
+
+        Distances are means over the last seconds.
+        """
         session = self.session
         tracks = session.tracks(last=round(SECONDS / session.dt))
         length = Lengths.of(session.tree, session.effectors)
@@ -95,7 +100,7 @@ class Race(Live):
         return f"{who}, {session.gait.name}, {caps}. Mean distance: {far or 'no tick yet'}."
 
     def draw(self) -> None:
-        """Have the scene show what the session says."""
+        """Draw the session's state in the scene."""
         session = self.session
         self.scene.show(
             np.array([*session.theta.values()]),
@@ -109,7 +114,7 @@ class Race(Live):
         """Bring words and tables up to date."""
         self.scene.driver.description = self.words
         whose = Markup("<p>On the left above: the effectors of {}.</p>").format(self.session.method)
-        self._table.value = whose + table(self.session)
+        self._table.value = whose + session_table(self.session)
 
     def _move(self, motion: str) -> None:
         self.session.gait = other_motion(self.session, motion, self._first)

@@ -12,6 +12,7 @@ from ikteach.motion import Track, track
 from ikteach.solvers import dls
 from ikteach.study import after, variants
 from ikteach.study.experiment import circle
+from ikteach.view.chapters.transpose import BENT
 from ikteach.view.charts import outline
 from ikteach.view.live.bench import Bench, Shown
 from ikteach.view.live.canvas import Canvas
@@ -19,7 +20,6 @@ from ikteach.view.live.panel import choice, log_slider, slider
 from ikteach.view.stage.colours import BLUE, GREEN, ORANGE, RED
 from ikteach.view.widgets.closing import making
 
-START = np.array([0.9, -0.7, -0.6])  # [rad] a bent arm
 LOW, HIGH, STEP = -3.0, 1.0, 0.1  # λ from 10^LOW to 10^HIGH
 DAMPINGS = 10 ** np.arange(LOW, HIGH + STEP / 2, STEP)
 TIMES = np.arange(1, 121) / 30  # [s] two rounds of the target
@@ -33,14 +33,20 @@ def arm_in(unit: float) -> Body:
 
 @cache
 def sweep(unit: float, centre: float) -> Track:
-    """Have the arm follow the circle with every λ at once, lengths in that unit."""
+    """Have the arm follow the circle with every λ.
+
+    All run at once, with lengths in that unit.
+    """
     targets = unit * circle(TIMES, centre=(centre, 0, 0))
-    theta = np.broadcast_to(START, (len(DAMPINGS), len(START)))
+    theta = np.broadcast_to(BENT, (len(DAMPINGS), len(BENT)))
     return track(*arm_in(unit), targets, partial(dls, damping=DAMPINGS), theta=theta, times=TIMES)
 
 
 class DlsPlot:
-    """The arm on its round, and nearness against jitter for every λ."""
+    """The arm on its round, and two measures of it.
+
+    Nearness is drawn against jitter, for every λ.
+    """
 
     def __init__(self) -> None:
         figure = Figure(figsize=(9.6, 4.0), dpi=90)
@@ -101,7 +107,10 @@ class DlsPlot:
 
 @making()
 def tradeoff_bench() -> Bench:
-    """Make the bench of chapter 5: λ, its unit, the target's circle, the moment shown."""
+    """Make the bench of chapter 5.
+
+    Its controls: λ, its unit, the target's circle, the moment shown.
+    """
     controls = {
         "damping": log_slider("damping λ", 0.1, LOW, HIGH, STEP),
         "unit": choice("lengths in", list(UNITS)),

@@ -14,7 +14,10 @@ from ikteach.view.widgets.prose import grid
 
 
 class Poser(Bench):
-    """A figure with a slider for each joint, from limit to limit; balls mark its effectors."""
+    """A figure with a slider for each joint.
+
+    Each slider goes from limit to limit; balls mark the effectors.
+    """
 
     def __init__(self, figure: Figure, *, slot: str | None = "poser") -> None:
         figure = doors.figure(figure)
@@ -31,7 +34,7 @@ class Poser(Bench):
         self.joints = joints
 
     def theta(self) -> Array:
-        """Give the pose that the sliders say, (n,) [rad or m]."""
+        """Give the pose of the sliders, (n,) [rad or m]."""
         return self.joints.theta(self.values)
 
 

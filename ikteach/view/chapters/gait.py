@@ -28,7 +28,9 @@ from ikteach.view.widgets.prose import Prose
 
 
 class GaitPlayer(Live):
-    """A figure that follows the targets of a gait, by every method at once; one of them is shown.
+    """A figure that follows a gait by every method at once.
+
+    One of the methods is shown.
 
     methods  {name: solver}, or solvers and their names in a list, or one of them alone; the four
              of the course if none are given
@@ -102,11 +104,11 @@ class GaitPlayer(Live):
 
     @property
     def words(self) -> str:
-        """Say what the picture shows, for those who cannot see it."""
-        return words(self.session)
+        """The picture in words, for people who cannot see it."""
+        return session_words(self.session)
 
     def draw(self) -> None:
-        """Have the scene show what the session says."""
+        """Draw the session's state in the scene."""
         session = self.session
         self.scene.show(
             session.theta[session.method],
@@ -121,11 +123,14 @@ class GaitPlayer(Live):
         """Bring words and tables up to date."""
         session = self.session
         self.scene.driver.description = self.words
-        self._table.value = table(session, session.method)
+        self._table.value = session_table(session, session.method)
 
 
-def words(session: Session) -> str:
-    """Say what the shown figure does, by which method, and how well."""
+def session_words(session: Session) -> str:
+    """Put the movement of the shown figure into words.
+
+    They name its motion and its method, and say how well it follows.
+    """
     length = Lengths.of(session.tree, session.effectors)
     far = ", ".join(
         f"{name} {length(d)}"
@@ -137,8 +142,11 @@ def words(session: Session) -> str:
     return f"A {who}, {wounded}{motion} by {session.method}. From its target: {far}."
 
 
-def table(session: Session, shown: str | None = None) -> Markup:
-    """Write the last seconds of each method as a table; the `shown` one says so."""
+def session_table(session: Session, shown: str | None = None) -> Markup:
+    """Write the last seconds of each method as a table.
+
+    The `shown` one says so.
+    """
     tracks = session.tracks(last=round(SECONDS / session.dt))
     if not tracks:
         return Markup("<p>No tick yet: the table fills when the figure moves.</p>")

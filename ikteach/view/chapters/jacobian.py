@@ -19,9 +19,10 @@ WAYS = ("v × (s − p)", "finite differences")
 
 
 class ColumnPoser(Bench):
-    """A figure posed by sliders, with the columns of J at one effector as arrows.
+    """A figure posed by sliders, with columns of J.
 
-    Half a metre on the screen is 1 m/rad. The columns are those of the formula, or of differences.
+    The columns at one effector are arrows: half a metre on the screen is 1 m/rad. They are those of
+    the formula, or of differences.
     """
 
     def __init__(self, figure: Figure, *, slot: str | None = "columns") -> None:
@@ -57,7 +58,7 @@ class ColumnPoser(Bench):
         scene.switch("columns of J")
 
     def theta(self) -> Array:
-        """Give the pose that the sliders say, (n,) [rad or m]."""
+        """Give the pose of the sliders, (n,) [rad or m]."""
         return self.joints.theta(self.values)
 
 

@@ -17,7 +17,10 @@ CAP, SIDE = (0.5, 45.0), (0.3, 2.0)  # from, to [degrees per step] and [m]
 
 
 def rules(degrees: float) -> dict[str, Solver]:
-    """Cap the pseudoinverse: not at all, the whole step, or each chain by itself."""
+    """Cap the pseudoinverse in three ways.
+
+    Not at all, the whole step, or each chain by itself.
+    """
     bound, chains = radians(degrees), human().effectors.chains
     return {
         "no cap": pseudoinverse,
@@ -27,7 +30,9 @@ def rules(degrees: float) -> dict[str, Solver]:
 
 
 class CapPlayer(Cell):
-    """The gait player with the pseudoinverse under three caps at once, and two sliders more.
+    """The gait player with the pseudoinverse under three caps.
+
+    All caps are tried at once; two more sliders set them.
 
     degrees  the cap [degrees per step]
     x_hand   how far to the side the hands are to go [m]
@@ -56,7 +61,7 @@ class CapPlayer(Cell):
 
     @property
     def words(self) -> str:
-        """Say what the picture shows, for those who cannot see it."""
+        """The picture in words, for people who cannot see it."""
         return self.player.words
 
     def still(self) -> Still:
@@ -64,7 +69,7 @@ class CapPlayer(Cell):
         return self.player.still()
 
     def acted(self) -> None:
-        """Draw what a slider has changed."""
+        """Draw the change that a slider has made."""
         self.player.acted()
 
     def _cap(self, degrees: float) -> None:

@@ -29,7 +29,10 @@ WHITE = "#ffffff"
 
 
 class CursorScene(Scene):
-    """A scene with one target, the cursor: white with a word over it, or red with another."""
+    """A scene with one target, the cursor.
+
+    It is white with a word over it, or red with another.
+    """
 
     def __init__(self, session: Reaching, **options: Any) -> None:
         super().__init__(session.tree, _cursor(session), dark=True, slot=None, **options)
@@ -44,7 +47,10 @@ class CursorScene(Scene):
         self._within: bool | None = None
 
     def point(self, session: Reaching, change: int) -> None:
-        """Draw the session: the pose, the cursor, and the rod from the hand that reaches for it."""
+        """Draw the session: the pose, the cursor and the rod.
+
+        The rod comes from the hand that reaches for the cursor.
+        """
         self.effectors = self.stage.effectors = _cursor(session)
         if session.within != self._within:  # few messages: only when the colour changes
             self._within = session.within
@@ -60,7 +66,9 @@ def _cursor(session: Reaching) -> Effectors:
 
 
 class Simulator(Live):
-    """A figure that reaches for the cursor by every way at once; one of them is shown.
+    """A figure that reaches for the cursor by every way.
+
+    All do so at once; one of them is shown.
 
     Display it in a notebook. `session`, a `Reach` or a `PlanarReach`, holds all state and may be
     changed from cells while the figure moves. The cursor is moved in the picture with mouse or
@@ -103,7 +111,7 @@ class Simulator(Live):
 
     @property
     def words(self) -> str:
-        """Say what the picture shows, for those who cannot see it."""
+        """The picture in words, for people who cannot see it."""
         session = self.session
         x, y, z = session.cursor
         return (
@@ -149,7 +157,7 @@ class Simulator(Live):
         self._known = self.session.cursor
 
     def draw(self) -> None:
-        """Have the scene show what the session says."""
+        """Draw the session's state in the scene."""
         session = self.session
         if session.cursor is not self._known:  # it was put there by a cell, or by a reset
             self._known = session.cursor

@@ -29,8 +29,11 @@ ARROW = 0.45  # [m] for a whole unit of u_i
 
 
 @lru_cache(maxsize=64)
-def pose(phase: float, steps: int) -> Array:
-    """Take `steps` of SDLS from rest to the walk's targets at that phase [rad]; θ (n,)."""
+def pose_after(phase: float, steps: int) -> Array:
+    """Take `steps` of SDLS towards the walk's targets.
+
+    They start at rest, towards the targets at that phase [rad]; gives θ (n,).
+    """
     theta = TREE.rest
     for _ in range(steps):
         theta = step(TREE, theta, EFFECTORS, gait.walking.at(phase), sdls).theta
@@ -38,7 +41,10 @@ def pose(phase: float, steps: int) -> Array:
 
 
 class SdlsPlot:
-    """Bars of the filter factors, and the chosen direction drawn on the body."""
+    """Bars of the filter factors, and the chosen direction.
+
+    The direction is drawn on the body.
+    """
 
     def __init__(self) -> None:
         figure = Figure(figsize=(10.4, 4.2), dpi=90)
@@ -76,7 +82,7 @@ class SdlsPlot:
         max_angle  γ_max of SDLS [°]
         phase      of the walk, 0 to 1
         """
-        theta = pose(round(2 * np.pi * phase, 6), steps)
+        theta = pose_after(round(2 * np.pi * phase, 6), steps)
         frames = forward(TREE, theta)
         s = locate(frames, EFFECTORS)
         J = jacobian(TREE, frames, EFFECTORS)
@@ -105,7 +111,9 @@ class SdlsPlot:
 
 
 class Body:
-    """The human seen along an axis, and from each effector an arrow.
+    """The human seen along an axis.
+
+    From each effector comes an arrow.
 
     across  the coordinate that runs from left to right: 0 for x, 2 for z
     half    of the width that is seen [m]

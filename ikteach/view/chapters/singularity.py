@@ -20,9 +20,10 @@ SIZE = 0.1  # ‖e‖ [m]
 
 
 class BendBench(Bench):
-    """A two-link arm with its ellipsoid; sliders bend it and turn an error of 10 cm round it.
+    """A two-link arm with its ellipsoid.
 
-    Under it: its singular values, and the length of the step that each method would take.
+    Sliders bend it and turn an error of 10 cm round it. Under it: its singular values, and the
+    length of the step that each method would take.
     """
 
     def __init__(self, *, slot: str | None = "bend") -> None:
@@ -57,7 +58,7 @@ class BendBench(Bench):
 
 
 class SingularityPlot:
-    """Bars of the singular values, and of the step that each method takes."""
+    """Bars of singular values and of each method's step."""
 
     def __init__(self) -> None:
         figure = Figure(figsize=(9.6, 2.3), dpi=90)

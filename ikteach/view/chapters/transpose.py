@@ -18,17 +18,20 @@ from ikteach.view.live.panel import slider
 from ikteach.view.stage.colours import BLUE, GREEN, ORANGE, RED
 from ikteach.view.widgets.closing import making
 
-START = np.array([0.9, -0.7, -0.6])  # [rad] a bent arm
+BENT = np.array([0.9, -0.7, -0.6])  # [rad] an arm of three links, bent
 GAINS = np.linspace(0, 3, 121)
 TINY = 1e-30  # [m²] keeps 0 / 0 away where the hand is on the target
 
 
 class TransposePlot:
-    """The arm in its pose, and the curve that the next step goes down."""
+    """The arm, and the curve that the next step descends.
+
+    The arm is drawn in its pose.
+    """
 
     def __init__(self) -> None:
         self.arm = planar_arm(3)
-        self.theta = START
+        self.theta = BENT
         self.steps = 0
         self._asked = (1.0, np.zeros((1, 3)))
         figure = Figure(figsize=(9.6, 3.9), dpi=90)
@@ -90,7 +93,7 @@ class TransposePlot:
 
     def reset(self) -> None:
         """Go back to the bent arm."""
-        self.theta, self.steps = START, 0
+        self.theta, self.steps = BENT, 0
 
     def _stepped(self) -> Array:
         gain, targets = self._asked

@@ -11,7 +11,7 @@ from ikteach.motion.live.session import Session
 from ikteach.motion.live.settings import SESSION, check_options
 from ikteach.motion.mix import Mix
 from ikteach.solvers import SOLVERS, Solver
-from ikteach.view.chapters.gait import table, words
+from ikteach.view.chapters.gait import session_table, session_words
 from ikteach.view.live.live import Live
 from ikteach.view.live.panel import Act, Does, Panel, button
 from ikteach.view.live.strips import Strips
@@ -30,10 +30,11 @@ OPTIONS = [name for name in SESSION if name not in ("figure", "methods")] + ["fo
 
 
 class Workbench(Live):
-    """A human that walks, runs, or follows targets by hand, with all that can be set about it.
+    """A human that moves, with all that can be set.
 
-    Display it in a notebook. `session` holds all state and may be changed from cells. To run the
-    cell again closes the workbench that it made before. Files go to `folder`.
+    It walks, runs, or follows targets by hand. Display it in a notebook. `session` holds all state
+    and may be changed from cells. To run the cell again closes the workbench that it made before.
+    Files go to `folder`.
 
     scene, targets, recorder, glass   its parts
     panels     {title: panel}, whose `controls` are the widgets by name
@@ -112,7 +113,7 @@ class Workbench(Live):
     # What the loop calls.
 
     def draw(self) -> None:
-        """Have the scene show what the session says, or nothing while a replay is open."""
+        """Draw the session, or nothing while a replay is open."""
         if self.replay is not None:
             return
         session = self.session
@@ -130,15 +131,15 @@ class Workbench(Live):
     def report(self) -> None:
         """Bring words and tables up to date."""
         self.scene.driver.description = self.words
-        self._table.value = table(self.session, self.session.method)
+        self._table.value = session_table(self.session, self.session.method)
         self.targets.agree()
 
     # What a person can do.
 
     @property
     def words(self) -> str:
-        """What the picture shows, for those who cannot see it."""
-        return words(self.session)
+        """The picture in words, for people who cannot see it."""
+        return session_words(self.session)
 
     def play(self) -> None:
         """Let time pass."""
@@ -153,7 +154,10 @@ class Workbench(Live):
         super().pause()
 
     def quit(self) -> None:
-        """Stop every loop, and say so. To run the cell again begins anew."""
+        """Stop every loop, and say so.
+
+        To run the cell again begins anew.
+        """
         self.recorder.halt()
         self._back_to_now()
         self.pause()
@@ -169,11 +173,14 @@ class Workbench(Live):
         self.status.say(f"Taken back: {event}.")
 
     def scrub(self) -> None:
-        """Stop the clock, and look through what was."""
+        """Stop the clock, and look through the log."""
         self._look_at(self.session.log())
 
     def keep_no_files(self) -> None:
-        """Take the panel Recording away, for good: for a page that others operate."""
+        """Take the panel Recording away, for good.
+
+        For a page that others operate.
+        """
         close_all(self._drawer.children[-1])
 
     def step(self) -> None:

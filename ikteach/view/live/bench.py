@@ -15,7 +15,7 @@ from ikteach.view.widgets.prose import Prose
 
 
 class Shown(NamedTuple):
-    """A picture (PNG), the same in words, and what stands under it."""
+    """A picture (PNG), its words, and the text under it."""
 
     png: bytes
     words: str
@@ -23,15 +23,17 @@ class Shown(NamedTuple):
 
 
 class Bench(Cell):
-    """Controls, and a picture that `show(**values)` makes of their values whenever one moves.
+    """Controls, and a picture of their values.
+
+    `show(**values)` makes the picture whenever a control moves.
 
     controls  {name: widget with a value}
-    buttons   {label: what it does}; then the picture is made anew
+    buttons   {label: its action}; then the picture is made anew
     scene     a live scene that `show` moves, above the picture
     panel     the controls as they are laid out; one under the other, if not given
 
-    The status says what goes wrong in `show` or in a button, and the bench stays. A subclass
-    says what it is made of, and overrides nothing.
+    The status tells of errors in `show` or in a button, and the bench stays. A subclass gives its
+    parts, and overrides nothing.
     """
 
     def __init__(
@@ -69,11 +71,11 @@ class Bench(Cell):
 
     @property
     def words(self) -> str:
-        """Say what the picture shows, for those who cannot see it."""
+        """The picture in words, for people who cannot see it."""
         return str(self._picture.alt)
 
     def refresh(self) -> None:
-        """Do what buttons have asked for, and make the picture anew."""
+        """Act on buttons, and make the picture anew."""
         self.attempt(self._draw)
 
     def still(self) -> Still:

@@ -11,7 +11,10 @@ FEW = 48  # colours of such a picture
 
 
 class Canvas:
-    """A figure of which only the `moving` artists are drawn anew; the rest stays as it was."""
+    """A figure that redraws only its `moving` artists.
+
+    The rest stays as it was.
+    """
 
     def __init__(self, figure: Figure, moving: list[Artist]) -> None:
         self._moving, self._canvas = moving, FigureCanvasAgg(figure)

@@ -15,9 +15,10 @@ from ikteach.view.stage.lengths import Lengths, digits_of, round_step
 
 
 class Joints:
-    """A slider per joint; joints stand together that move the same effectors.
+    """Sliders of the joints, grouped by effectors.
 
-    Two rows that one angle turns (`figures.TOGETHER`) have one slider.
+    There is one per joint, and joints stand together that move the same effectors. Two rows that
+    one angle turns (`figures.TOGETHER`) have one slider.
 
     controls  {name: slider}
     widget    all of them, to be shown
@@ -47,9 +48,11 @@ class Joints:
 
 
 class Dial(NamedTuple):
-    """How a joint is set by a person: degrees of a hinge, a length of a slide.
+    """A joint, as a person sets it.
 
-    each        what one unit is of θ [rad or m]
+    Degrees of a hinge, a length of a slide.
+
+    each        one unit, in those of θ [rad or m]
     unit        its name
     low, high   ends of the range
     value       the rest

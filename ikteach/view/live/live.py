@@ -7,13 +7,15 @@ from typing import Any
 from ikteach.view.live.panel import play_button
 from ikteach.view.live.strips import EVERY, Strips
 from ikteach.view.webgl.scene import Scene
-from ikteach.view.widgets.actor import in_words
+from ikteach.view.widgets.actor import message_of
 from ikteach.view.widgets.cell import Cell
 from ikteach.view.widgets.picture import Still
 
 
 class Live(Cell):
-    """A session that is played, abstract: a subclass draws, reports and says it in words.
+    """A session that is played; an abstract class.
+
+    A subclass draws, reports and says it in words.
 
     session      has `tick()`, `ticks` and `dt`, and holds all state
     scene        follows it
@@ -45,7 +47,7 @@ class Live(Cell):
         scene.driver.on_page = self._seen
 
     def draw(self) -> None:
-        """Have the scene show what the session says."""
+        """Draw the session's state in the scene."""
         raise NotImplementedError
 
     def report(self) -> None:
@@ -54,7 +56,7 @@ class Live(Cell):
 
     @property
     def words(self) -> str:
-        """Say what the picture shows, for those who cannot see it."""
+        """The picture in words, for people who cannot see it."""
         raise NotImplementedError
 
     @property
@@ -96,12 +98,15 @@ class Live(Cell):
         return Still(self.scene.still().png, self.words)
 
     def acted(self) -> None:
-        """Draw what a control has changed."""
+        """Draw the change that a control has made."""
         self._changes += 1
         self.wake()
 
     def wake(self) -> None:
-        """See to it that the loop runs if there is something to do; from any thread."""
+        """Have the loop run if there is something to do.
+
+        May be called from any thread.
+        """
         if self._act.loop is not None and not self._act.loop.is_closed():
             self._act.loop.call_soon_threadsafe(self._start)
 
@@ -133,7 +138,7 @@ class Live(Cell):
             self.report()
         except Exception as error:  # a student's own solver, most likely
             self.pause()
-            self.status.fail(in_words(error))
+            self.status.fail(message_of(error))
 
     async def _go_on(self) -> None:
         """Let time pass, tick by tick, while it plays and somebody looks."""

@@ -13,14 +13,19 @@ Row = Any  # {name: control or Does}, or a widget
 
 
 class Does(NamedTuple):
-    """A control and its action: `act(value)` for a new value, `act()` for the click of a button."""
+    """A control and its action.
+
+    `act(value)` for a new value, `act()` for the click of a button.
+    """
 
     control: Any
     act: Act | None  # None: it is only read
 
 
 class Panel:
-    """Controls under a title, which act when a person changes them, and not when a program does.
+    """Controls under a title, which act for a person.
+
+    They act when a person changes them, and not when a program does.
 
     rows      from top to bottom: {name: control or Does(control, act)}, whose controls stand side
               by side, or any widget
@@ -57,7 +62,10 @@ class Panel:
 
     @property
     def values(self) -> dict[str, Any]:
-        """The value of each control that has one, before any rounding in the page."""
+        """The value of each control that has one.
+
+        It is the value before any rounding in the page.
+        """
         return {
             name: self._put.get(name, control.value)
             for name, control in self.controls.items()
@@ -65,7 +73,10 @@ class Panel:
         }
 
     def put(self, **values: Any) -> None:
-        """Set controls without acting; the range of a slider grows where it must."""
+        """Set controls without acting.
+
+        The range of a slider grows where it must.
+        """
         self._quiet = True
         try:
             for name, value in values.items():
@@ -77,11 +88,11 @@ class Panel:
             self._quiet = False
 
     def agree(self) -> None:
-        """Set controls to what they stand for, without acting."""
+        """Set controls to the values of `shows`, without acting."""
         self.put(**self._shows())
 
     def disable(self) -> None:
-        """Let no person change anything more."""
+        """Disable all controls: no person changes anything more."""
         for control in self.controls.values():
             control.disabled = True
 
@@ -134,7 +145,9 @@ def _rounded(control: Any, old: Any, new: Any) -> bool:
 
 
 def slider(label: str, value: float, low: float, high: float, step: float, **look: Any) -> Any:
-    """Make a slider from low to high, or to its value if that is beyond them.
+    """Make a slider from low to high.
+
+    Its range goes on to its value if that is beyond them.
 
     step  whole numbers only, if it is an int
     look  `width` of the slider with its label, `label_width`, and traits of the slider
@@ -148,7 +161,10 @@ def slider(label: str, value: float, low: float, high: float, step: float, **loo
 def log_slider(
     label: str, value: float, low: float, high: float, step: float = 0.05, **look: Any
 ) -> Any:
-    """Make a slider from 10^low to 10^high, in steps of the exponent."""
+    """Make a slider from 10^low to 10^high.
+
+    Its steps are those of the exponent.
+    """
     look = {"readout_format": ".3g"} | look
     return widgets.FloatLogSlider(value=value, min=low, max=high, step=step, **_look(label, **look))
 
@@ -156,7 +172,10 @@ def log_slider(
 def choice(
     label: str, options: Sequence[str], value: str | None = None, *, label_width: str = "190px"
 ) -> Any:
-    """Make buttons of which one is pressed, the first if no value is given."""
+    """Make buttons of which one is pressed.
+
+    It is the first if no value is given.
+    """
     style = {"description_width": label_width, "button_width": "auto"}
     value = options[0] if value is None else value
     return widgets.ToggleButtons(options=options, value=value, description=label, style=style)
@@ -165,7 +184,10 @@ def choice(
 def dropdown(
     label: str, options: Sequence[str], value: str | None = None, *, label_width: str = "190px"
 ) -> Any:
-    """Make a list of which one is chosen, the first if no value is given."""
+    """Make a list of which one is chosen.
+
+    It is the first if no value is given.
+    """
     style = {"description_width": label_width}
     value = options[0] if value is None else value
     return widgets.Dropdown(options=options, value=value, description=label, style=style)
@@ -182,7 +204,10 @@ def button(label: str) -> Any:
 
 
 def play_button() -> Any:
-    """Make a button that is pressed while the figure plays, and says what a click does."""
+    """Make a button that is pressed while the figure plays.
+
+    Its label names the effect of a click.
+    """
     made = widgets.ToggleButton(value=True, description="Pause", layout={"width": "80px"})
 
     def name(change: Any) -> None:

@@ -12,7 +12,7 @@ from PIL import Image, ImageDraw, ImageFont  # comes with matplotlib
 from ikteach.arrays import Array
 from ikteach.formats.movie import Pixels
 from ikteach.markup import brief, visible
-from ikteach.view.raster.raycast import Eye, Solid, draw, solids, square
+from ikteach.view.raster.raycast import Eye, Solid, draw, homogeneous, solids
 from ikteach.view.stage import shapes
 from ikteach.view.stage.colours import Paper, paper, rgb
 from ikteach.view.stage.forms import Form, Grid, Label, Mesh, Ring, Sole, Wires
@@ -29,7 +29,9 @@ HAIR = 0.99  # a line on a surface is seen: it must be so much farther to be hid
 
 
 class Drawing:
-    """A camera and what it draws of a stage; it keeps the solids of the layers that it knows.
+    """A camera and its pictures of a stage.
+
+    It keeps the solids of the layers that it knows.
 
     size   (width, height) of the picture [pixels]
     side   one of `stage.CAMERAS`, or "plane"; None: as a live scene looks at first
@@ -46,7 +48,10 @@ class Drawing:
         self.look_from(side or stage.side)
 
     def look_from(self, side: str) -> None:
-        """Put the camera to a named side; LookupError for an unknown one."""
+        """Put the camera to a named side.
+
+        LookupError for an unknown one.
+        """
         (width, height), finer, stage = self.size, self.finer, self.stage
         position = stage.eye(side, max(width / height, 1))
         size = width * finer, height * finer
@@ -133,7 +138,7 @@ class Drawing:
 
     def _wires(self, pen: Any, form: Form, row: Array, ink: Any, nearness: Any) -> None:
         """Draw lines, but where something is before them."""
-        points, joined, _ = shapes.lines(form)
+        points, joined, _ = shapes.segments(form)
         flat, away = self.eye.project(_carried(row, points))
         ends, middle = flat[joined], flat[joined].mean(axis=1).astype(int)
         width, height = self.eye.size
@@ -159,7 +164,7 @@ class _Placed(NamedTuple):
 
 
 def _rows(layer: Layer, now: Now) -> Array:
-    return square(np.concatenate([layer.place(now), np.eye(3, 4)[None]]))
+    return homogeneous(np.concatenate([layer.place(now), np.eye(3, 4)[None]]))
 
 
 def _solids(mesh: Mesh) -> list[Solid]:
@@ -194,7 +199,10 @@ def _ink(colour: str, opacity: float) -> tuple[int, ...]:
 
 @cache
 def font(high: int) -> Any:
-    """Open the font of the plots, which every matplotlib brings with it."""
+    """Open the font of the plots.
+
+    Every matplotlib brings it along.
+    """
     face = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
     return ImageFont.truetype(str(face), high)
 
@@ -207,7 +215,10 @@ def caption(image: Image.Image, words: str, ink: str) -> None:
 
 
 def legend(image: Image.Image, title: str, rows: Sequence[tuple[str, str, bool]], ink: str) -> None:
-    """Write names with the marks of their colours, boxed or not, into the upper right corner."""
+    """Write names and marks into the upper right corner.
+
+    The marks have the colours of the names, and are boxed or not.
+    """
     pen, small, high = ImageDraw.Draw(image), font(11), 15
     names = [brief(name, 24) for name, _, _ in rows]
     wide = max(pen.textlength(name, font=small) for name in [title, *names])

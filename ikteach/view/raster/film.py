@@ -17,7 +17,10 @@ from ikteach.view.stage.stage import CAMERAS, PLANE, Stage
 
 
 class Shot(NamedTuple):
-    """What one picture shows: pose θ (n,), targets (k, 3) [m], floor and advance [m], caption."""
+    """The content of one picture.
+
+    Pose θ (n,), targets (k, 3) [m], floor and advance [m], caption.
+    """
 
     theta: Array
     targets: Array
@@ -27,7 +30,7 @@ class Shot(NamedTuple):
 
 
 class Film:
-    """A camera and what it films: `picture` makes one frame of size (width, height).
+    """A camera on one figure: `picture` makes one frame of size (width, height).
 
     side   one of `stage.CAMERAS`, or "plane"; None: as a live scene looks at first
     finer  how many rays a pixel's side is made of: 1 is fast, 2 has smooth edges
@@ -66,8 +69,9 @@ def shots(
     method: str | None = None,
     title: str = "",
 ) -> Iterator[Shot]:
-    """Pick the moments of a run that `rate` frames per second show, by the clock.
+    """Pick the moments of a run that a film shows.
 
+    rate            frames per second, by the clock
     start, seconds  from when and for how long [s]; all of it if not given
     method          whose pose; the one that was shown at the time if not given
     title           how the caption begins
@@ -83,7 +87,10 @@ def shots(
 
 
 def shot(run: Log, clock: float, *, method: str | None = None, title: str = "") -> Shot:
-    """Pick what was seen at that time [s]: the last tick before it, or the first."""
+    """Return the shot at that time [s].
+
+    It shows the last tick before then, or the first.
+    """
     t = max(0, int(np.searchsorted(run.clock, clock + 1e-9, side="right")) - 1)
     i = int(run.shown[t]) if method is None else run.methods.index(method)
     name = run.methods[i]

@@ -27,9 +27,11 @@ HEAD = 0.78  # where the head of an arrow begins
 
 
 class Solid(NamedTuple):
-    """A quadric in the frame of joint `frame`, and two balls that together hold all of it.
+    """A quadric in the frame of joint `frame`.
 
-    Q (4, 4), W (c, 4) coordinates that must lie within ±bounds (c,) of 0, balls (2, 4): x, y, z, r
+    Q      (4, 4)
+    W      (c, 4) coordinates that must lie within ±bounds (c,) of 0
+    balls  (2, 4) x, y, z, r of two balls that together hold all of it
     """
 
     frame: int
@@ -41,31 +43,35 @@ class Solid(NamedTuple):
 
 
 def solids(form: Form, colour: str, frame: int) -> list[Solid]:
-    """Make solids of a form; none of one that is flat, or made of lines."""
+    """Make solids of a form.
+
+    A form that is flat, or made of lines, has none.
+    """
     match form:
         case Ball(centre, radii):
-            return [ellipsoid(centre, radii, colour, frame)]
+            return [solid_ellipsoid(centre, radii, colour, frame)]
         case Limb(start, end, thick, thin):
             tips = [
-                ellipsoid(at, (r,) * 3, colour, frame) for at, r in ((start, thick), (end, thin))
+                solid_ellipsoid(at, (r,) * 3, colour, frame)
+                for at, r in ((start, thick), (end, thin))
             ]
-            return [rod(start, end, thick, thin, colour, frame), *tips]
+            return [solid_rod(start, end, thick, thin, colour, frame), *tips]
         case Rod(start, end, radius):
-            return [rod(start, end, radius, radius, colour, frame)]
+            return [solid_rod(start, end, radius, radius, colour, frame)]
         case Arrow(radius):
-            shaft = rod((0, 0, 0), (0, HEAD, 0), radius, radius, colour, frame)
-            return [shaft, rod((0, HEAD, 0), (0, 1, 0), 2.4 * radius, 0, colour, frame)]
+            shaft = solid_rod((0, 0, 0), (0, HEAD, 0), radius, radius, colour, frame)
+            return [shaft, solid_rod((0, HEAD, 0), (0, 1, 0), 2.4 * radius, 0, colour, frame)]
         case Box(half):
-            return box(half, colour, frame)
+            return solid_box(half, colour, frame)
         case Mark(radius, boxed):
             if boxed:
-                return box(0.78 * radius, colour, frame)
-            return [ellipsoid((0, 0, 0), (radius,) * 3, colour, frame)]
+                return solid_box(0.78 * radius, colour, frame)
+            return [solid_ellipsoid((0, 0, 0), (radius,) * 3, colour, frame)]
         case _:
             return []
 
 
-def ellipsoid(centre: ArrayLike, radii: ArrayLike, colour: str, frame: int) -> Solid:
+def solid_ellipsoid(centre: ArrayLike, radii: ArrayLike, colour: str, frame: int) -> Solid:
     """Make Q of Σ ((x − c)/r)² = 1."""
     c, r = np.asarray(centre, dtype=float), np.asarray(radii, dtype=float)
     to_unit = np.diag([*(1 / r), 1.0])
@@ -76,12 +82,12 @@ def ellipsoid(centre: ArrayLike, radii: ArrayLike, colour: str, frame: int) -> S
     return Solid(frame, Q, np.zeros((2, 4)), free, np.array([ball, ball]), rgb(colour))
 
 
-def rod(
+def solid_rod(
     start: ArrayLike, end: ArrayLike, thick: float, thin: float, colour: str, frame: int
 ) -> Solid:
     """Make Q of x² + z² = (thick + (thin − thick) y)², y from 0 to 1 along start → end."""
     start, end = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
-    to_rod = np.linalg.inv(square(sticks(start, end)))
+    to_rod = np.linalg.inv(homogeneous(sticks(start, end)))
     local = np.zeros((4, 4))
     local[0, 0] = local[2, 2] = 1
     slope = np.array([0, thin - thick, 0, thick])
@@ -92,8 +98,11 @@ def rod(
     return Solid(frame, Q, W, np.array([0.5, ANYWHERE]), balls, rgb(colour))
 
 
-def box(half: float, colour: str, frame: int) -> list[Solid]:
-    """Make three pairs of faces, x² = half², each cut by the other two."""
+def solid_box(half: float, colour: str, frame: int) -> list[Solid]:
+    """Make three pairs of faces, x² = half².
+
+    Each is cut by the other two.
+    """
     faces = []
     for axis in range(3):
         Q = np.diag([0.0, 0, 0, -half * half])
@@ -109,7 +118,7 @@ class Eye:
 
     size   (width, height) [pixels]
     field  the angle that the shorter side of the picture covers [degrees]
-    unit   what it measures in [m]: about the size of what it looks at
+    unit   in which it measures [m]: about the size of the thing that it looks at
     """
 
     def __init__(
@@ -131,11 +140,17 @@ class Eye:
         self.y = ((height / 2 - 0.5 - np.arange(height)) * self.pixel).astype("f4")
 
     def seen(self, points: ArrayLike) -> Array:
-        """Give points (..., 3) in the axes of the eye, in units from it."""
+        """Give points (..., 3) in the axes of the eye.
+
+        They are in units from it.
+        """
         return np.asarray(points, dtype=float) @ self.view[:3, :3].T + self.view[:3, 3]
 
     def project(self, points: ArrayLike) -> tuple[Array, Array]:
-        """Give pixels (..., 2) of points (..., 3), and how far in front they are [units]."""
+        """Give pixels (..., 2) and distances of points (..., 3).
+
+        A distance is how far in front of the eye a point is [units].
+        """
         seen = self.seen(points)
         return self.flat(seen), -seen[..., 2]
 
@@ -150,8 +165,8 @@ def draw(
 ) -> Any:
     """Draw the solids into pixels (height, width, 3), each in its frame (4, 4) of `frames`.
 
-    nearness  1/t of what is there, (height, width), so that 0 is infinitely far; it is written to,
-              and given back
+    nearness  1/t of the picture so far, (height, width), so that 0 is infinitely far; it is written
+              to, and given back
     """
     if nearness is None:
         nearness = np.zeros(pixels.shape[:2], dtype="f4")
@@ -229,7 +244,7 @@ def _trace(
     pixels[rows, columns] = np.minimum(part.colour * shade[:, None], 255)
 
 
-def square(matrices: Array) -> Array:
+def homogeneous(matrices: Array) -> Array:
     """Put the row 0 0 0 1 under [R | p] (..., 3, 4)."""
     last = np.broadcast_to([0.0, 0, 0, 1], (*matrices.shape[:-2], 1, 4))
     return np.concatenate([matrices, last], axis=-2)

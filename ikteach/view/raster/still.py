@@ -23,10 +23,10 @@ from ikteach.view.widgets.picture import Picture
 
 
 class StillScene(Living):
-    """One or several figures with k targets each, drawn in the kernel; a `stage.View`.
+    """Figures with targets, drawn in the kernel; a `stage.View`.
 
-    It takes what `scene.Scene` takes. `widget` is a picture with words for those who cannot see
-    it; `png` and `alt` are the two themselves.
+    One or several figures have k targets each; the arguments are those of `scene.Scene`. `widget`
+    is a picture with words for people who cannot see it; `png` and `alt` are the two themselves.
     """
 
     def __init__(
@@ -71,14 +71,17 @@ class StillScene(Living):
 
     @property
     def widget(self) -> Picture:
-        """Make the picture when it is first asked for; it is drawn at each change from then."""
+        """The picture as a widget.
+
+        It is made when it is first asked for, and drawn at each change from then.
+        """
         if self._widget is None:
             self._widget = Picture(png=self.png, alt=self.alt)
         return self._widget
 
     @property
     def png(self) -> bytes:
-        """Draw what was shown last; empty if nothing was."""
+        """The last moment as a PNG; empty if there is none."""
         if not self._png and self._now is not None:
             over = [layer for name, layer in self._over.items() if name in self._on]
             self._png = png(self._drawing, [*self._basics, *over], self._now, self._dark)
@@ -86,7 +89,7 @@ class StillScene(Living):
 
     @property
     def alt(self) -> str:
-        """Say what was shown last."""
+        """The last moment in words."""
         return "" if self._now is None else self._words(self._now)
 
     def switch(self, layer: str, on: bool = True) -> None:
@@ -97,13 +100,19 @@ class StillScene(Living):
         self._changed()
 
     def look_from(self, side: str) -> None:
-        """Put the camera to one of `CAMERAS`, or to "plane": along the normal of its plane."""
+        """Put the camera to one of `CAMERAS`, or to "plane".
+
+        "plane" looks along the normal of the figure's plane.
+        """
         self._drawing.look_from(side)
         self._side = side
         self._changed()
 
     def show(self, theta: Array, targets: Array, **about: Unpack[About]) -> None:
-        """Draw poses and targets, and what the layers need; see `stage.View.show`."""
+        """Draw poses and targets; see `stage.View.show`.
+
+        `about` has the facts that layers need.
+        """
         self._now = self.stage.now(theta, targets, **about)
         for layer in self._over.values():
             layer.note(self._now)
@@ -142,7 +151,10 @@ class StillScene(Living):
 
 
 def png(drawing: Drawing, layers: Sequence[Layer], now: Now, dark: bool) -> bytes:
-    """Draw one moment of these layers, with a legend of the targets, as a PNG."""
+    """Draw one moment of these layers as a PNG.
+
+    It has a legend of the targets.
+    """
     image, out = drawing.picture(layers, now, dark), io.BytesIO()
     names = drawing.stage.effectors.names
     rows = [(name, effector_colour(i), boxed(name)) for i, name in enumerate(names)]

@@ -15,7 +15,7 @@ LETTERS = 16  # of a name over a head
 
 
 class Floor(Layer):
-    """Squares under the figures, or behind those that live in a plane."""
+    """Squares under the figures, or behind planar ones."""
 
     name = "floor"
 
@@ -28,8 +28,11 @@ class Floor(Layer):
         return self.stage.ground(now.floor, now.advance)[None]
 
 
-class Targets(Layer):
-    """Where effectors are to come: balls, boxes on the right. Overlaid figures share them."""
+class TargetMarks(Layer):
+    """Marks where effectors are to come.
+
+    They are balls, boxes on the right. Overlaid figures share them.
+    """
 
     name = "targets"
 
@@ -50,12 +53,18 @@ class Targets(Layer):
 
 
 class Figures(Layer):
-    """Figures with their skin and their names: a row per figure, then one per joint."""
+    """Figures with their skin and their names.
+
+    A row per figure comes first, then one per joint of each.
+    """
 
     name = "figures"
 
     def build(self) -> None:
-        """Make a mesh per figure; one may look through all but the first that are overlaid."""
+        """Make a mesh per figure.
+
+        All overlaid figures but the first can be looked through.
+        """
         stage = self.stage
         f, n = len(stage), len(stage.tree)
         self.rows = f + f * n
@@ -85,7 +94,10 @@ class Figures(Layer):
 
 
 class Gaps(Layer):
-    """A rod from each effector to its target: what is left of the way."""
+    """A rod from each effector to its target.
+
+    It is the way that is left.
+    """
 
     name = "gaps"
 
@@ -95,7 +107,10 @@ class Gaps(Layer):
         self.add([rod] * len(self.stage) * len(self.stage.effectors), [GREY])
 
     def place(self, now: Now) -> Array:
-        """Stretch the rods; one that is too short to be seen is hidden."""
+        """Stretch the rods from effectors to targets.
+
+        A rod that is too short to be seen is hidden.
+        """
         places = self.stage.places[:, None]
         rods = sticks(now.effectors + places, now.targets + places)
         left = rods[..., 1]  # of the way
@@ -103,7 +118,7 @@ class Gaps(Layer):
         return hidden(rods, short).reshape(-1, 3, 4)
 
 
-BASICS = (Floor, Targets, Figures, Gaps)
+BASICS = (Floor, TargetMarks, Figures, Gaps)
 
 
 def _brief(name: str) -> str:

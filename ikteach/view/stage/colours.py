@@ -16,7 +16,10 @@ JOINTS = "#aab4be"  # of rods
 
 
 class Paper(NamedTuple):
-    """What a scene is drawn on: background, words, and lines of the floor."""
+    """The colours of background, words, and lines of the floor.
+
+    They are the paper that a scene is drawn on.
+    """
 
     back: str
     ink: str

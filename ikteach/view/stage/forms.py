@@ -7,6 +7,8 @@ from ikteach.arrays import Array
 
 Vector = Sequence[float] | Array
 
+ORIGIN = (0, 0, 0)
+
 
 class Ball(NamedTuple):
     """An ellipsoid with these half axes."""
@@ -16,7 +18,10 @@ class Ball(NamedTuple):
 
 
 class Limb(NamedTuple):
-    """A rod with round ends, `thick` at its start and `thin` at its end."""
+    """A rod with round ends.
+
+    Its radius is `thick` at the start and `thin` at the end.
+    """
 
     start: Vector
     end: Vector
@@ -45,7 +50,10 @@ class Box(NamedTuple):
 
 
 class Mark(NamedTuple):
-    """A dot of a trail: a ball, or a box, as rough as may be."""
+    """A dot of a trail: a ball or a box.
+
+    It is as rough as may be.
+    """
 
     radius: float
     boxed: bool
@@ -66,14 +74,20 @@ class Ring(NamedTuple):
 
 
 class Wires(NamedTuple):
-    """A ball of radius 1 as wires: parallels at these heights, and circles through the poles."""
+    """A ball of radius 1, made of wires.
+
+    They are parallels at these heights, and circles through the poles.
+    """
 
     heights: tuple[float, ...] = (-0.71, 0.0, 0.71)
     meridians: int = 3
 
 
 class Grid(NamedTuple):
-    """Squares of the plane y = 0 around the origin, in the colours of the paper."""
+    """Squares of the plane y = 0 around the origin.
+
+    They have the colours of the paper.
+    """
 
     side: float
     squares: int
@@ -93,7 +107,7 @@ class Piece(NamedTuple):
 
 
 class Mesh(NamedTuple):
-    """Pieces that are drawn together: all of them solid, or all of them lines.
+    """Pieces that are drawn together, all solid or all lines.
 
     opacity  1 where nothing shines through
     hides    whether it hides what is behind it
@@ -109,7 +123,10 @@ class Mesh(NamedTuple):
 
 
 class Label(NamedTuple):
-    """Words at a point of the world that always face the eye; their height [m]."""
+    """Words at a point of the world.
+
+    They always face the eye. `height` is in metres.
+    """
 
     at: Vector
     text: str
@@ -118,5 +135,8 @@ class Label(NamedTuple):
 
 
 def boxed(name: str) -> bool:
-    """Tell whether marks of this name are boxes: those on the right are, not by colour alone."""
+    """Tell whether marks of this name are boxes.
+
+    Marks on the right are, so that colour is not the only sign.
+    """
     return name.endswith(".r")

@@ -12,12 +12,14 @@ UNMOVED: Array = frozen(np.eye(3, 4)[None])
 
 
 class Layer:
-    """Part of a scene, for any renderer. A new one is a class here below, and no more.
+    """Part of a scene, for any renderer.
 
-    name    what it is called, by who switches it
+    A new one is a subclass, and no more.
+
+    name    by which it is switched
     meshes  the forms; each piece names the row that moves it
     labels  words, which nothing moves
-    rows    how many rows `place` gives
+    rows    number of rows that `place` gives
     """
 
     name = ""
@@ -37,14 +39,20 @@ class Layer:
         """Remember this moment, if the layer shows the past; before `place`."""
 
     def place(self, now: Now) -> Array:
-        """Move the forms: [R | p] (rows, 3, 4) of the world; NaN hides what a row moves."""
+        """Place the forms: [R | p] (rows, 3, 4) of the world.
+
+        NaN hides the forms that a row moves.
+        """
         return np.zeros((0, 3, 4))
 
     def clear(self) -> None:
         """Forget the past."""
 
     def add(self, forms: Sequence[Form], colours: Sequence[str], **looks: float | bool) -> None:
-        """Add a mesh of forms, in these colours in turn, each moved by the next row."""
+        """Add a mesh of forms, each moved by the next row.
+
+        They have these colours in turn.
+        """
         pieces = [Piece(i, form, colours[i % len(colours)]) for i, form in enumerate(forms)]
         self.rows = max(self.rows, len(pieces))
         self.meshes.append(Mesh(pieces, **looks))  # type: ignore[arg-type]
@@ -58,7 +66,10 @@ def hidden(rows: Array, where: Array) -> Array:
 
 
 def upright(points: Array) -> Array:
-    """[R | p] (points, 3, 4) that only shifts; hidden where a point (..., 3) is NaN."""
+    """Make [R | p] (points, 3, 4) that only shift.
+
+    A row is hidden where its point (..., 3) is NaN.
+    """
     rows = UNMOVED.repeat(points.size // 3, axis=0)
     rows[..., 3] = points.reshape(-1, 3)
     return rows

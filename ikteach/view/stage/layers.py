@@ -6,6 +6,7 @@ from ikteach.arrays import Array
 from ikteach.body.rotation import sticks, transforms
 from ikteach.view.stage.colours import BLUE, GREEN, ORANGE, PURPLE, RED, SKY, effector_colour
 from ikteach.view.stage.forms import (
+    ORIGIN,
     STATIC,
     Arrow,
     Ball,
@@ -23,11 +24,12 @@ from ikteach.view.stage.layer import Layer, hidden, upright
 from ikteach.view.stage.stage import SHOWN_AT, Now, picture_axes
 from ikteach.view.stage.trails import MARKS, PRINTS, Prints, Trail, feet
 
-ORIGIN = (0, 0, 0)
-
 
 class WorldAxes(Layer):
-    """x, y and z from where the figure is fixed, each with its letter. Nothing moves them."""
+    """The axes x, y and z where the figure is fixed.
+
+    Each has its letter. Nothing moves them.
+    """
 
     name = "world axes"
 
@@ -50,7 +52,10 @@ class JointAxes(Layer):
     name = "joint axes"
 
     def build(self) -> None:
-        """Make a rod per joint; an axis is the same in its joint's own frame, at any angle."""
+        """Make a rod per joint.
+
+        An axis is the same in its joint's own frame, at any angle.
+        """
         radius, half = 0.009 * self.stage.unit, 0.16 * self.stage.unit
         rods = [Rod(-half * axis, half * axis, radius) for axis in self.stage.tree.axes]
         self.add(rods * len(self.stage), [effector_colour(j) for j in range(len(rods))])
@@ -120,18 +125,27 @@ class Trails(Layer):
 
 
 class Columns(Layer):
-    """The columns of J as arrows at an effector: where each joint would move it."""
+    """The columns of J as arrows at an effector.
+
+    They show where each joint would move it.
+    """
 
     name = "columns of J"
 
     def build(self) -> None:
-        """Make an arrow for each joint of each figure, in the colour of the joint's axis."""
+        """Make an arrow per joint of each figure.
+
+        It has the colour of the joint's axis.
+        """
         n = len(self.stage.tree)
         arrow = Arrow(0.013 * self.stage.unit)
         self.add([arrow] * n * len(self.stage), [effector_colour(j) for j in range(n)])
 
     def place(self, now: Now) -> Array:
-        """Draw arrows as `Stage.arrows` has them; none for a joint that does not move it."""
+        """Draw arrows as `Stage.arrows` has them.
+
+        A joint that does not move the effector has none.
+        """
         if now.columns is None:
             return np.full((self.rows, 3, 4), np.nan)
         along = self.stage.arrows(now.columns)
@@ -147,7 +161,10 @@ class Ellipsoids(Layer):
     name = "ellipsoid"
 
     def build(self) -> None:
-        """Make a ball of radius 1 for each figure, to be stretched, and its axes."""
+        """Make a ball of radius 1 per figure, with axes.
+
+        `place` stretches them.
+        """
         f = len(self.stage)
         axes = [Piece(i, Rod(-way, way, 0.012), PURPLE) for i in range(f) for way in np.eye(3)]
         self.meshes.append(Mesh(axes))
@@ -157,7 +174,10 @@ class Ellipsoids(Layer):
         self.rows = f
 
     def place(self, now: Now) -> Array:
-        """Stretch half axes to `SHOWN_AT` metres for 1 m/rad; a lost way has a thin one."""
+        """Stretch half axes to `SHOWN_AT` metres for 1 m/rad.
+
+        Along a lost direction the half axis is thin.
+        """
         if now.axes is None or now.lengths is None:
             return np.full((self.rows, 3, 4), np.nan)
         half = np.maximum(SHOWN_AT * now.lengths, 2e-3 * self.stage.unit)
@@ -165,19 +185,28 @@ class Ellipsoids(Layer):
         return transforms(now.axes * half[:, None, :], centre)
 
 
-class Reach(Layer):
-    """How far, and how near, each chain can stretch: a ball of wires, or a ring in a plane."""
+class WorkspaceBounds(Layer):
+    """The outer and inner bounds of each chain's reach.
+
+    How far, and how near, it can stretch: a ball of wires, or a ring in a plane.
+    """
 
     name = "reach"
 
     def build(self) -> None:
-        """Make an outer and an inner surface for each chain of each figure."""
+        """Make an outer and an inner surface per chain.
+
+        Each figure has its own.
+        """
         planar, chains = self.stage.planar, len(self.stage) * len(self.stage.effectors)
         surface = Ring(0.008) if planar else Wires()
         self.add([surface] * 2 * chains, [PURPLE, ORANGE], opacity=1.0 if planar else 0.45)
 
     def place(self, now: Now) -> Array:
-        """Draw outer and inner in turn; none where a chain is without end, or has no hole."""
+        """Draw the outer and the inner surface in turn.
+
+        There is no outer one if a chain is without end, no inner one if it has no hole.
+        """
         f, k = len(self.stage), len(self.stage.effectors)
         found = np.full((f, k, 2, 3, 4), np.nan)
         axes = np.eye(3) if self.stage.normal is None else picture_axes(self.stage.normal)
@@ -191,5 +220,5 @@ class Reach(Layer):
 
 LAYERS: dict[str, type[Layer]] = {
     layer.name: layer
-    for layer in (WorldAxes, JointAxes, Footprints, Trails, Columns, Ellipsoids, Reach)
+    for layer in (WorldAxes, JointAxes, Footprints, Trails, Columns, Ellipsoids, WorkspaceBounds)
 }

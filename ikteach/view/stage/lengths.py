@@ -8,25 +8,38 @@ from ikteach.body.extent import extent
 
 
 class Lengths(NamedTuple):
-    """A unit for distances of a body: name, and what it is in metres."""
+    """A unit for distances of a body.
+
+    name    as it is written, such as "cm"
+    metres  its length [m]
+    """
 
     name: str
     metres: float
 
     @classmethod
     def of(cls, tree: Tree, effectors: Effectors) -> "Lengths":
-        """Choose the unit for distances: the largest of which the body's reach has ten."""
+        """Choose the unit for distances.
+
+        It is the largest of which the body's reach has ten.
+        """
         radius = extent(tree, effectors).radius
         return next((one for one in UNITS if radius >= 10 * one.metres), UNITS[-1])
 
     @classmethod
     def of_places(cls, radius: float) -> "Lengths":
-        """Choose the unit for coordinates of a body of that reach [m]: metres while they do."""
+        """Choose the unit for coordinates.
+
+        It suits a body of that reach [m]: metres while they do.
+        """
         fit = (one for one in UNITS if one.name != "cm" and radius >= LEAST[one.name])
         return next(fit, UNITS[-1])
 
     def number(self, length: float, digits: int = 1) -> str:
-        """Write a length [m] as a number, short where it is far too large."""
+        """Write a length [m] as a number.
+
+        It is short where it is far too large.
+        """
         value = length / self.metres
         return f"{value:.{digits}f}" if abs(value) < 1e6 else f"{value:.3g}"
 
@@ -49,17 +62,23 @@ METRE = UNITS[1]
 
 
 def decade(tree: Tree, effectors: Effectors) -> float:
-    """Find the power of ten nearest to the body's reach [m]: 1 of a human."""
+    """Return the power of ten nearest to the body's reach [m].
+
+    It is 1 for a human.
+    """
     return 10.0 ** round(log10(extent(tree, effectors).radius))
 
 
 def digits_of(step: float) -> int:
-    """Count the digits behind the point that tell multiples of a step apart."""
+    """Count the decimals that tell multiples of a step apart."""
     return max(0, -floor(log10(step) + 1e-9))
 
 
 def round_step(range_: float, steps: int = 300) -> float:
-    """Find a step of 1, 2 or 5 times a power of ten, of which a range has about `steps`."""
+    """Choose a round step for a range.
+
+    It is 1, 2 or 5 times a power of ten, and the range has about `steps` of them.
+    """
     rough = range_ / steps
     power = 10.0 ** floor(log10(rough))
     return float(min((1, 2, 5, 10), key=lambda m: abs(log10(m * power / rough))) * power)

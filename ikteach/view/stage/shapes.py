@@ -28,7 +28,10 @@ class Shape(NamedTuple):
 
 
 def revolved(outline: ArrayLike, around: int) -> Shape:
-    """Turn an outline (p, 2) of radii and heights, from the top down, around the y axis."""
+    """Turn an outline (p, 2) around the y axis.
+
+    The outline is of radii and heights, from the top down.
+    """
     radius, height = np.transpose(np.asarray(outline, dtype=float))[..., None]
     turn = (2 * np.arange(around + 1) + 1) * np.pi / around  # of 4, a box along the axes
     y = np.broadcast_to(height, (len(height), around + 1))
@@ -44,9 +47,10 @@ def revolved(outline: ArrayLike, around: int) -> Shape:
 
 @cache
 def globe(around: int, half: int) -> Shape:
-    """Make a ball of radius 1, in slices, each half of it in rings.
+    """Make a ball of radius 1, in slices and rings.
 
-    The equator is there twice, a hair above and below, so that a limb can be drawn apart there.
+    It has `around` slices, and `half` rings in each half. The equator is there twice, a hair above
+    and below, so that a limb can be drawn apart there.
     """
     north = np.linspace(0, np.pi / 2, half + 1) - 1e-9
     down = np.concatenate([north, np.pi - north[::-1]])
@@ -65,7 +69,10 @@ def arrow(radius: float) -> Shape:
 
 
 def mark(radius: float, boxed: bool) -> Shape:
-    """Make a box, or a ball as rough as may be: eight triangles."""
+    """Make a box, or a ball as rough as possible.
+
+    Such a ball has eight triangles.
+    """
     if boxed:
         side = 0.78 * radius
         wide = side * np.sqrt(2)
@@ -87,7 +94,10 @@ def ring(thick: float) -> Shape:
 
 
 def wires(heights: Sequence[float], meridians: int) -> Shape:
-    """Make a ball of radius 1 of wires: parallels at these heights, and meridians."""
+    """Make a ball of radius 1 of wires.
+
+    They are parallels at these heights, and meridians.
+    """
     turn = np.linspace(0, 2 * np.pi, 37)
     c, s, o = np.cos(turn), np.sin(turn), np.zeros_like(turn)
     rings = [np.c_[np.sqrt(1 - y * y) * c, o + y, np.sqrt(1 - y * y) * s] for y in heights]
@@ -98,8 +108,8 @@ def wires(heights: Sequence[float], meridians: int) -> Shape:
 
 
 @cache
-def lines(form: Ring | Wires) -> Shape:
-    """Make segments of what is drawn with a pen."""
+def segments(form: Ring | Wires) -> Shape:
+    """Make segments of a form that is drawn with a pen."""
     return wires(*form) if isinstance(form, Wires) else _circle()
 
 

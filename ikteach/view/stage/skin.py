@@ -11,9 +11,7 @@ from ikteach.body.extent import Extent
 from ikteach.body.figures import Figure, human, simulator
 from ikteach.body.tree import GROUND
 from ikteach.view.stage.colours import HAIR, JOINTS, SHIRT, SHOES, SKIN, TROUSERS
-from ikteach.view.stage.forms import Ball, Limb, Vector
-
-ORIGIN = (0, 0, 0)
+from ikteach.view.stage.forms import ORIGIN, Ball, Limb, Vector
 
 
 class Part(NamedTuple):
@@ -42,7 +40,10 @@ def human_skin() -> list[Part]:
 
 
 def simulator_skin() -> list[Part]:
-    """Build the figure of CS 490: two segments of the back, a round head."""
+    """Build the figure of CS 490.
+
+    It has two segments of the back, and a round head.
+    """
     parts: list[Part] = [
         Part(None, Ball((0, 0.045, 0), (0.15, 0.11, 0.105)), TROUSERS),
         Part("back.lower", Limb((0, 0, 0), (0, 0.2, 0), 0.115, 0.115), SHIRT),
@@ -74,9 +75,11 @@ def _limbs(side: str, shoulder: str, hip: str) -> list[Part]:
 
 
 class Skin(NamedTuple):
-    """A human's skin for a tree that is shaped like a human's, of any size and in any place.
+    """A human's skin for a tree shaped like a human's.
 
-    parts  what it is made of
+    The tree may be of any size and in any place.
+
+    parts  its solid parts
     unit   how many times as large as a human it is
     base   (3,) where its pelvis is [m]
     """
@@ -87,12 +90,18 @@ class Skin(NamedTuple):
 
     @property
     def extent(self) -> Extent:
-        """The ball that holds all its poses; narrower than what is known of any body."""
+        """The ball that holds all its poses.
+
+        It is narrower than the one that `body.extent` gives for any tree.
+        """
         return Extent(self.base + [0, 0.11 * self.unit, 0], 1.175 * self.unit)
 
 
 def skin_of(tree: Tree) -> Skin | None:
-    """Find the skin that fits the shape of a tree, whatever its names; None if none does."""
+    """Choose the skin that fits the shape of a tree.
+
+    Names do not matter. None if no skin fits.
+    """
     for figure, skin in SKINS:
         like = figure().tree
         if len(tree) == len(like) and _roots(tree).sum() == _roots(like).sum():
@@ -153,7 +162,10 @@ def _placed(part: Part, named: dict[str, str], unit: float, base: Array) -> Part
 
 
 def stick_skin(tree: Tree, effectors: Effectors, thick: float) -> list[Part]:
-    """Join joints to each other and to effectors by rods, so thick [m], for any tree."""
+    """Join joints to each other and to effectors by rods.
+
+    The tree may be any. `thick` is the radius of the rods [m].
+    """
     parts: list[Part] = []
     base = tree.offsets[_roots(tree)].mean(axis=0)
     for j, name in enumerate(tree.names):

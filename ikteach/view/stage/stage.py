@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, Protocol, TypedDict, Unpack
 
 import numpy as np
 
-from ikteach.arrays import Array, ArrayLike, finite
+from ikteach.arrays import TINY, Array, ArrayLike, finite
 from ikteach.body import Effectors, Frames, Tree, forward, locate
 from ikteach.body.extent import extent
 from ikteach.body.tree import GROUND
@@ -23,7 +23,6 @@ SQUARE = 0.5  # side of a square of the floor under a human [m]
 SHOWN_AT = 0.5  # length on the screen of 1 m/rad [m]: columns of J, axes of the ellipsoid
 REACH = 1.2  # radius of the ball that holds all poses of a body of unit 1, about a human's [m]
 
-
 CAMERAS = {  # the ways from the figure to the named cameras
     "three-quarter": (1.65, 0.3, 2.3),
     "front": (0.0, 0.0, 1.0),
@@ -34,11 +33,12 @@ PLANE = "plane"  # along the normal of its plane: how a planar figure is looked 
 FIELD = 45.0  # [degrees] from the lower to the upper edge of the picture
 ROOM = 1.08  # radius of the ball that cameras see, as a share of the one that holds all poses
 FLAT = 1e-6  # sine of the angle by which a direction in a plane may miss it
-TINY = 1e-150  # keeps 0 / 0 away where a link has no length
 
 
 class About(TypedDict, total=False):
-    """What layers may be shown of a moment, beside poses and targets; `View.show` takes it.
+    """Facts about a moment, beside poses and targets.
+
+    `View.show` takes them, and layers may show them.
 
     floor      height of the floor [m]; None: under the figure at rest
     advance    how far the figures have gone [m]: the floor glides back under them
@@ -62,9 +62,9 @@ class About(TypedDict, total=False):
 
 
 class View(Protocol):
-    """What can be asked of any renderer.
+    """The interface of any renderer.
 
-    widget   what to display
+    widget   is to be displayed
     stage    which figures stand where
     layers   {name: whether it is drawn}, for the names in `layers.LAYERS`
     dark     whether the background is dark; may be set at any time
@@ -79,7 +79,10 @@ class View(Protocol):
         """Tell which layers are drawn."""
 
     def show(self, theta: Array, targets: Array, **about: Unpack[About]) -> None:
-        """Draw poses θ (n,) or (f, n), targets (k, 3) or (f, k, 3), and what `About` names."""
+        """Draw poses and targets, and the facts of `About`.
+
+        Poses θ are (n,) or (f, n), targets (k, 3) or (f, k, 3).
+        """
 
     def switch(self, layer: str, on: bool = True) -> None:
         """Draw a layer, or do not; LookupError for an unknown name."""
@@ -91,7 +94,7 @@ class View(Protocol):
         """Forget trails and footprints."""
 
     def close(self) -> None:
-        """Free what the page and the kernel hold of it."""
+        """Free its objects in the page and in the kernel."""
 
 
 class Now(NamedTuple):
@@ -111,10 +114,12 @@ class Now(NamedTuple):
 
 
 class Stage:
-    """Figures of one tree, named, side by side (`apart` > 0) or in one place (`apart` = 0).
+    """Figures of one tree, side by side or overlaid.
+
+    They are named. They stand side by side if `apart` > 0, in one place if `apart` = 0.
 
     places  (f, 3)  where each stands [m], from where one alone would
-    extent  the ball that holds all poses of one: what cameras look at
+    extent  the ball that holds all poses of one: cameras look at it
     unit    the size of a figure against a human's: thickness of rods, sizes of marks
     base    (3,) where it is fixed to the ground, in the middle [m]
     normal  (3,) of the plane that it lives in, towards the eye; None if it lives in no plane
@@ -160,7 +165,10 @@ class Stage:
 
     @property
     def overlaid(self) -> bool:
-        """Tell whether several figures stand in one place; they share one set of targets."""
+        """Tell whether several figures stand in one place.
+
+        They then share one set of targets.
+        """
         return len(self) > 1 and self.apart == 0
 
     @property
@@ -171,15 +179,18 @@ class Stage:
 
     @property
     def free(self) -> Array:
-        """Give 1 per coordinate (3,) in which anything can move, 0 for that across its plane."""
+        """The coordinates (3,) in which anything can move.
+
+        1 for each of them, 0 for the one across its plane.
+        """
         across = np.zeros(3) if self.normal is None else abs(self.normal)
         return np.where(across > 1 - FLAT, 0.0, 1.0)
 
     def eye(self, side: str, aspect: float) -> Array:
-        """Place a camera that sees all poses of all figures from a named side, (3,) [m].
+        """Place a camera (3,) [m] on a named side.
 
-        It looks at the middle of them. aspect: width over height of its picture, of which `FIELD`
-        is the height. LookupError for an unknown side.
+        It sees all poses of all figures, and looks at the middle of them. aspect: width over height
+        of its picture, of which `FIELD` is the height. LookupError for an unknown side.
         """
         axes = picture_axes(self._towards(side))
         tall = radians(FIELD / 2)
@@ -199,10 +210,10 @@ class Stage:
         return np.asarray(ways[side])
 
     def ground(self, floor: float, advance: float) -> Array:
-        """Lay squares of the plane y = 0 under the figure, or behind it: [R | p] (3, 4).
+        """Lay squares under the figure, or behind it: [R | p] (3, 4).
 
-        They are a floor in that height [m], over which the figure has advanced [m], or a wall
-        behind a figure in a plane.
+        They are those of the plane y = 0, as a floor in that height [m], over which the figure has
+        advanced [m], or as a wall behind a figure in a plane.
         """
         if self.normal is None:
             x, _, z = self.extent.centre
@@ -214,7 +225,7 @@ class Stage:
 
     @property
     def words(self) -> str:
-        """Say what can be seen."""
+        """The scene in a sentence."""
         named = [name for name in self.names if name]
         who = self.crowd + (f" ({', '.join(named)})" if named else "")
         return f"{who} with targets for {', '.join(self.effectors.names)}."
@@ -226,7 +237,10 @@ class Stage:
         return f"{len(self)} {what}s" if len(self) > 1 else f"A {what}"
 
     def name_at(self, f: int) -> Array:
-        """Place the name of figure f, from its place: over it, under it, or in a list."""
+        """Place the name of figure f, relative to its place.
+
+        It is over it, under it, or in a list.
+        """
         if self.overlaid:
             x, y = -0.75, 0.65 - 0.16 * f
         else:  # where the figure is not, at rest
@@ -236,8 +250,8 @@ class Stage:
     def now(self, theta: Array, targets: Array, **about: Unpack[About]) -> Now:
         """Make the moment that `View.show` is given, with a row per figure.
 
-        ValueError for a shape that does not fit, or what is no number; TypeError for an option
-        that nobody knows.
+        ValueError for a shape that does not fit, or a value that is no number; TypeError for an
+        option that nobody knows.
         """
         for name in about:
             if name not in About.__annotations__:
@@ -303,7 +317,10 @@ def _number(name: str, value: Any) -> float:
 
 
 def picture_axes(back: Array) -> Array:
-    """Give right, up and towards the eye, in columns (3, 3), of an eye so far back."""
+    """Return right, up and towards the eye, in columns (3, 3).
+
+    `back` (3,) leads to the eye from the point that it looks at.
+    """
     z = back / max(float(np.linalg.norm(back)), 1e-12)
     up = [0.0, 1.0, 0.0] if abs(z[1]) < 1 - 1e-9 else [0.0, 0.0, -1.0]
     x = np.cross(up, z)
@@ -312,14 +329,18 @@ def picture_axes(back: Array) -> Array:
 
 
 def sides_of(tree: Tree, effectors: Effectors) -> list[str]:
-    """List the sides from which a body can be looked at, the usual one first."""
+    """List the sides from which to look at a body.
+
+    The usual one comes first.
+    """
     return [*CAMERAS] if plane_of(tree, effectors) is None else [PLANE, *CAMERAS]
 
 
 def plane_of(tree: Tree, effectors: Effectors) -> Array | None:
-    """Find the normal (3,) of the plane a body lives in, towards `CAMERAS`; None if in none.
+    """Return the normal (3,) of a body's plane, or None.
 
-    Its hinges turn about the normal; its links and slides lie in the plane.
+    It points towards `CAMERAS`; None if the body lives in no plane. Its hinges turn about the
+    normal; its links and slides lie in the plane.
     """
     roots = tree.parents == GROUND
     fixed = tree.offsets[roots]

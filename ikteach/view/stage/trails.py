@@ -22,7 +22,10 @@ class Trail:
         self._gap = gap
 
     def pass_through(self, points: Array, advance: float) -> Array:
-        """Note where the points are, and give where the marks are now."""
+        """Note where points are, and return the marks.
+
+        The marks are where `seen` has them now.
+        """
         ground = points + [0.0, 0.0, advance]
         last = np.take_along_axis(self.marks, (self._next - 1)[..., None, None], axis=2)[:, :, 0]
         far = ~(np.linalg.norm(ground - last, axis=-1) < self._gap)  # true also of the first
@@ -30,7 +33,10 @@ class Trail:
         return self.seen(advance)
 
     def seen(self, advance: float) -> Array:
-        """Give where the marks are when the figure has gone on by so much [m]."""
+        """Return where the marks are now.
+
+        The figure has gone on by `advance` [m].
+        """
         return self.marks - [0.0, 0.0, advance]
 
     def clear(self) -> None:
@@ -44,7 +50,9 @@ class Trail:
 
 
 class Prints(Trail):
-    """A mark each time a point stops going forward: where the foot comes down.
+    """Marks where points stop going forward.
+
+    There the foot comes down.
 
     gap  how far a point must go for it to have moved [m]
     """
@@ -55,7 +63,10 @@ class Prints(Trail):
         self._forward = np.zeros(count, dtype=bool)
 
     def pass_through(self, points: Array, advance: float) -> Array:
-        """Note where the points are, and give where the marks are now."""
+        """Note where points are, and return the marks.
+
+        The marks are where `seen` has them now.
+        """
         if self._before is not None:
             forward = points[..., 2] > self._before[..., 2] + self._gap
             back = points[..., 2] < self._before[..., 2] - self._gap

@@ -17,9 +17,11 @@ from ikteach.view.widgets.closing import close_all
 
 
 class Keeper(Cell):
-    """Save what happened, and open it again: file name, Save, Open.
+    """A panel to save a session and to open runs.
 
-    session   what is saved
+    It has a file name, Save and Open.
+
+    session   the one that is saved
     open_run  is given the run that was opened; if there is none, a `Replay` of it in this widget
     """
 

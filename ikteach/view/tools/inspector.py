@@ -19,7 +19,9 @@ STYLE = style_tag("view/tools/inspector.css")
 
 
 class Glass(Cell):
-    """The next tick of a session, taken apart: e, J, U Σ Vᵀ, each method's share, Δθ, movement.
+    """The next tick of a session, taken apart.
+
+    Its pages show e, J, U Σ Vᵀ, each method's share, Δθ and the movement.
 
     session  whose next tick is looked at; looking changes nothing in it
     stop     is called before looking, to stop whatever lets time pass: `player.pause`
@@ -62,7 +64,7 @@ class Glass(Cell):
         self.status.say("Nothing is under the glass yet.")
 
     def look(self) -> None:
-        """Stop the clock, and take the tick that would come next apart."""
+        """Stop the clock, and take the next tick apart."""
         self._stop()
         session, method = self.session, self.method.value
         *_, targets = session.ahead()
@@ -80,7 +82,10 @@ class Glass(Cell):
         self._turn_to(self.number)
 
     def advance(self) -> None:
-        """Let the tick that was looked at happen, and look at the one after it."""
+        """Let the tick that was looked at happen.
+
+        Then look at the one after it.
+        """
         for _ in range(self.session.gait.slowdown):
             self.session.tick()
         self._show()

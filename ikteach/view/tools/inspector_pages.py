@@ -16,7 +16,10 @@ from ikteach.view.widgets.picture import png_of
 
 
 class Page(NamedTuple):
-    """A picture (PNG), what it shows in words, its numbers, and a sentence on what to look for."""
+    """A picture (PNG), its words and its numbers.
+
+    `text` is a sentence on the things to look for.
+    """
 
     title: str
     text: str

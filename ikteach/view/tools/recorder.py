@@ -16,10 +16,9 @@ from ikteach.view.live.panel import tick_box
 from ikteach.view.raster.film import Film, Shot, shot
 from ikteach.view.stage.stage import sides_of
 from ikteach.view.widgets import doors
-from ikteach.view.widgets.cell import Cell
+from ikteach.view.widgets.cell import REFRESH, Cell
 
 NOW, PAST = "from now on", "what has been"
-OFTEN = 0.2  # [s] between two moves of the progress bar
 PARTS = 4  # how often the words follow it
 LABEL = {"description_width": "90px"}
 
@@ -29,10 +28,11 @@ class Stopped(Exception):
 
 
 class Recorder(Cell):
-    """Film a session to an MP4, AVI or GIF: name, size, rate and seconds, Start and Stop.
+    """A panel that films a session to MP4, AVI or GIF.
 
-    Display it in a notebook. The pictures are drawn and encoded by a thread of their own, so that
-    cells and figures go on; the movie has its name only once it is complete.
+    It has a name, size, rate and seconds, Start and Stop. Display it in a notebook. The pictures
+    are drawn and encoded by a thread of their own, so that cells and figures go on; the movie has
+    its name only once it is complete.
     """
 
     def __init__(
@@ -84,7 +84,10 @@ class Recorder(Cell):
         return self.folder / f"{stem}{self.kind.value}"
 
     def begin(self) -> None:
-        """Start the movie; what cannot be is said in the panel."""
+        """Start the movie.
+
+        The panel says why, if none can be made.
+        """
         if self._act.loop is None:
             self.status.fail(
                 "A movie is made in the background of a notebook, and none runs here. "
@@ -136,7 +139,7 @@ class Recorder(Cell):
             async for one in self._shots(begin, frames, rate, past):
                 await loop.run_in_executor(pool, lambda: add(camera.picture(one)))  # noqa: B023
                 done += 1
-                if monotonic() - last > OFTEN:
+                if monotonic() - last > REFRESH:
                     self.progress.value, last = done, monotonic()
                 if done * PARTS // frames > (done - 1) * PARTS // frames:
                     self.status.say(f"Recording: {done} of {frames} frames.")

@@ -13,14 +13,13 @@ from ikteach.motion.live.log import Log
 from ikteach.view.raster.film import Film, Shot
 from ikteach.view.tools.runs import error_picture, error_rows, error_words, length_of, places
 from ikteach.view.widgets import doors
-from ikteach.view.widgets.actor import attempt, in_words
-from ikteach.view.widgets.cell import Cell
+from ikteach.view.widgets.actor import attempt, message_of
+from ikteach.view.widgets.cell import REFRESH, Cell
 from ikteach.view.widgets.curve import Curve
 from ikteach.view.widgets.picture import Picture, as_png
 from ikteach.view.widgets.table import Rows
 
 AS_SHOWN = "as it was shown"
-OFTEN = 0.2  # [s] between two moves of slider, plot and table while it plays
 
 
 class Shows(Protocol):
@@ -43,7 +42,9 @@ class Sketch:
 
 
 class Replay(Cell):
-    """A scrubber over a run: play and pause, a slider by tick, an error plot and a table.
+    """A scrubber over a run.
+
+    It has play and pause, a slider by tick, an error plot and a table.
 
     run    a `Log`: of a session (`session.log()`), or loaded from its files
     scene  draws the poses; if there is none, a `Sketch` in this widget does
@@ -87,7 +88,10 @@ class Replay(Cell):
         self._method_changed()
 
     def go(self, tick: int) -> None:
-        """Show the pose of that row of the log, 0 to T − 1; IndexError if there is none."""
+        """Show the pose of that row of the log.
+
+        Rows are 0 to T − 1; IndexError if there is none.
+        """
         if not 0 <= tick < len(self.run):
             raise IndexError(f"the log has rows 0 to {len(self.run) - 1}, not {tick}")
         if tick != self.at or tick != self._wanted:
@@ -143,7 +147,7 @@ class Replay(Cell):
         try:
             await self._go_on()
         except Exception as error:  # of whoever draws
-            words = in_words(error)
+            words = message_of(error)
             self.playing.value = False
             self._act(lambda: self.status.fail(words))  # after what the button says about itself
 
@@ -160,7 +164,7 @@ class Replay(Cell):
                 self._wanted = self.at = came = max(due, self.at)
                 if getattr(getattr(self.scene, "driver", None), "ready", True):
                     self._draw()
-            if monotonic() - last > OFTEN:
+            if monotonic() - last > REFRESH:
                 self._agree(aloud=False)
                 last = monotonic()
             await asyncio.sleep(run.dt / 2)

@@ -15,9 +15,9 @@ from ikteach.view.widgets.picture import png_of
 
 
 def error_picture(run: Log, error: Array) -> tuple[bytes, list[float]]:
-    """Draw the distances (T, k) over the clock; PNG, and where its axis lies: left and right, 0..1.
+    """Draw the distances (T, k) over the clock.
 
-    A triangle above the axes is a change.
+    Gives PNG, and where its axis lies: left and right, 0..1. A triangle above the axes is a change.
     """
     figure = Figure(figsize=(9, 2.5), dpi=100, layout="constrained")
     canvas = FigureCanvasAgg(figure)
@@ -39,7 +39,7 @@ def error_picture(run: Log, error: Array) -> tuple[bytes, list[float]]:
 
 
 def error_words(run: Log, error: Array) -> str:
-    """Say in words what the plot shows."""
+    """Put the plot of the distances (T, k) into words."""
     length = length_of(run)
     each = "; ".join(
         f"{name} {length(one.mean())} on average, at most {length(one.max())} at "
@@ -50,7 +50,7 @@ def error_words(run: Log, error: Array) -> str:
 
 
 def length_of(run: Log) -> Lengths:
-    """Give the unit in which distances of the run are read."""
+    """Give the unit in which the run's distances are read."""
     return Lengths.of(run.tree, run.effectors)
 
 
@@ -60,13 +60,15 @@ def _last_run(run: Log) -> int:
 
 
 def places(clock: Array) -> list[float]:
-    """Where each tick lies on the axis, 0..1."""
+    """Place each tick on the axis, 0..1."""
     span = max(clock[-1] - clock[0], 1e-9)
     return ((clock - clock[0]) / span).tolist()
 
 
 def error_rows(run: Log, columns: Index, error: Array) -> list[list[str]]:
-    """Write a row per tick: its number, clock, method, distances (T, k), and what changed.
+    """Write a row per tick.
+
+    Its number, clock, method, distances (T, k) and changes.
 
     columns  (T,) the number of the method
     """

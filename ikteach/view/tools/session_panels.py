@@ -70,7 +70,10 @@ SLIDERS: Mapping[str, Mapping[str, tuple[str, float, float, float]]] = {
 
 
 class MethodPanel(Panel):
-    """Which method is shown, the options of each, and the rules around the solver."""
+    """Controls of methods and of the rules around solvers.
+
+    They choose the method that is shown, and set the options of each.
+    """
 
     def __init__(self, session: Session, guard: Guard) -> None:
         self.session = session
@@ -138,7 +141,10 @@ class MethodPanel(Panel):
 
 
 def options_of(solver: Solver) -> dict[str, Any]:
-    """Make a control for each keyword option of a solver, set to its default."""
+    """Make a control for each keyword option of a solver.
+
+    It is set to its default.
+    """
     controls = {}
     for option in inspect.signature(solver).parameters.values():
         if option.kind is not option.KEYWORD_ONLY:
@@ -254,7 +260,10 @@ def motion_panel(session: Session, guard: Guard) -> Panel:
 
 
 def gait_rows(session: Session, *groups: str, **look: Any) -> list[dict[str, Does]]:
-    """Make a slider for each parameter of these groups that the session's motion has."""
+    """Make a slider for each parameter of these groups.
+
+    Only for parameters that the session's motion has.
+    """
     return [
         {
             name: Does(
@@ -277,24 +286,33 @@ def gait_values(session: Session, *groups: str) -> dict[str, Any]:
 def gait_panel(
     title: str, session: Session, groups: tuple[str, ...], guard: Guard, *above: Any
 ) -> Panel:
-    """Make the sliders of these groups of gait parameters, under other widgets if there are any."""
+    """Make the sliders of these groups of gait parameters.
+
+    They stand under other widgets if there are any.
+    """
     rows = [*above, *gait_rows(session, *groups)]
     return Panel(title, rows, shows=lambda: gait_values(session, *groups), guard=guard)
 
 
 def motions(session: Session) -> list[str]:
-    """Give the names of the motions that a session's figure can make."""
+    """Name the motions that a session's figure can make."""
     known = list(MOTIONS) if isinstance(session.gait, Gait) else []
     return known if session.gait.name in known else [*known, session.gait.name]
 
 
 def other_motion(session: Session, name: str, first: Gait | Path) -> Gait | Path:
-    """Give the motion of that name, or the first one, with what is set about the figure."""
+    """Give the motion of that name, or the first one.
+
+    The figure keeps its wounds and its way forward.
+    """
     return as_set(MOTIONS[name] if name in MOTIONS and name != first.name else first, session)
 
 
 def as_set(motion: Gait | Path, session: Session) -> Gait | Path:
-    """Give a motion the wounds of the figure, and have it go forward if it does."""
+    """Give a motion the wounds of the figure.
+
+    It goes forward if the figure does.
+    """
     if isinstance(motion, Gait):
         return replace(motion, forward=session.gait.forward, wound=session.gait.wound)
     return replace(motion, wound=session.gait.wound)

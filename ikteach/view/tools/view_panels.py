@@ -16,13 +16,16 @@ from ikteach.view.stage.layers import LAYERS
 from ikteach.view.stage.stage import CAMERAS
 from ikteach.view.tools.session_panels import LABEL, LOOK, Guard
 from ikteach.view.webgl.scene import Scene
-from ikteach.view.widgets.ball import Ball
+from ikteach.view.widgets.ball import RotationBall
 
 ONE, BESIDE, OVER = "one figure", "all methods, side by side", "all methods, overlaid"
 
 
 def scene_of(session: Session, figures: str) -> Scene:
-    """Make the scene of one figure, or of a figure per method."""
+    """Make the scene of one figure, or of several.
+
+    There is one per method, if there are several.
+    """
     if figures == ONE:
         return Scene(session.tree, session.effectors, slot=None)
     apart, width = (0.0, 540) if figures == OVER else (None, 720)
@@ -31,7 +34,7 @@ def scene_of(session: Session, figures: str) -> Scene:
 
 
 class ViewPanel(Panel):
-    """What is seen, and from which side.
+    """Controls of the parts and the side that are seen.
 
     live       shows the scene; `live.scene` may become another
     turned     is called after the camera was put to another side
@@ -79,7 +82,7 @@ class ViewPanel(Panel):
         self.look_from(self.values["side"])
 
     def renew(self) -> None:
-        """Have another scene show what the last one did."""
+        """Have another scene show the same as the last one."""
         values = self.values
         for name, on in values.items():
             if name.startswith("layer.") and on:
@@ -89,7 +92,10 @@ class ViewPanel(Panel):
         self.straighten()
 
     def about(self, theta: Any) -> dict[str, Any]:
-        """Give the layers that are on what they need to know of the poses (f, n)."""
+        """Give the data that the layers need.
+
+        Those of the layers that are on, at the poses (f, n).
+        """
         on, session = self.live.scene.layers, self.live.session
         i = session.effectors.names.index(self.values["effector"])
         about: dict[str, Any] = {"effector": i}
@@ -116,10 +122,13 @@ class ViewPanel(Panel):
 
 
 class ObjectPanel(Panel):
-    """Turn, move and zoom the figure: what the thesis calls the transformation of the object."""
+    """Controls that turn, move and zoom the figure.
+
+    The thesis calls this the transformation of the object.
+    """
 
     def __init__(self, live: Live, guard: Guard, straighten: Callable[[], object]) -> None:
-        self.live, self.ball = live, Ball(azimuth=36.0, elevation=6.0)
+        self.live, self.ball = live, RotationBall(azimuth=36.0, elevation=6.0)
         sliders = {
             "azimuth": slider("turn [°]", 36.0, -180.0, 180.0, 1.0, **LOOK),
             "elevation": slider("tilt [°]", 6.0, -85.0, 85.0, 1.0, **LOOK),
@@ -142,7 +151,10 @@ class ObjectPanel(Panel):
         self.ball.observe(by_ball, ["azimuth", "elevation"])
 
     def begin(self) -> None:
-        """Set controls to where the camera is: from there the figure is turned."""
+        """Set controls to where the camera is.
+
+        From there the figure is turned.
+        """
         azimuth, elevation = self.live.scene.cameras.angles
         self._distance = self.live.scene.cameras.distance
         self.put(azimuth=azimuth, elevation=elevation, zoom=1.0, right=0.0, up=0.0)

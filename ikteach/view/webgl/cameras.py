@@ -10,7 +10,9 @@ from ikteach.view.stage.stage import FIELD, Stage, picture_axes
 
 
 class Cameras:
-    """A perspective and a parallel camera that look at the same thing; one of them is used.
+    """A perspective and a parallel camera, one in use.
+
+    They look at the same thing.
 
     renderer  is given the camera and its OrbitControls
     aspect    width over height of the picture
@@ -62,11 +64,17 @@ class Cameras:
         self.put(before.position, target)
 
     def look_from(self, side: str) -> None:
-        """Put the camera to one of the named sides; LookupError for an unknown one."""
+        """Put the camera to one of the named sides.
+
+        LookupError for an unknown one.
+        """
         self.put(self._stage.eye(side, self._aspect), self._stage.extent.centre)
 
     def turn(self, azimuth: float, elevation: float, distance: float | None = None) -> None:
-        """Look from azimuth and elevation [degrees]: left of the front, and above the floor."""
+        """Look from azimuth and elevation [degrees].
+
+        They are left of the front, and above the floor.
+        """
         a, e = radians(azimuth), radians(min(max(elevation, -89.0), 89.0))
         r = self.distance if distance is None else distance
         target = np.asarray(self._turning[self.current].target)
@@ -85,7 +93,7 @@ class Cameras:
 
     @property
     def distance(self) -> float:
-        """Measure how far the camera is from what it looks at [m]."""
+        """The camera's distance from its target [m]."""
         return float(np.linalg.norm(self._away))
 
     @property
@@ -93,7 +101,10 @@ class Cameras:
         return np.subtract(self.current.position, self._turning[self.current].target)
 
     def put(self, position: ArrayLike, target: ArrayLike) -> None:
-        """Place the camera, and have it look at the target, with y upwards in the picture."""
+        """Place the camera, and have it look at the target.
+
+        In the picture y is upwards.
+        """
         eye, at = np.asarray(position, dtype=float), np.asarray(target, dtype=float)
         camera, turning = self.current, self._turning[self.current]
         if tuple(turning.target) != tuple(at.tolist()):

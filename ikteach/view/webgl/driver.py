@@ -22,15 +22,17 @@ PATIENCE = 10.0  # [s] without a sign of life before a page counts as gone
 
 
 class Driver(Living, anywidget.AnyWidget):
-    """Writes matrices into pythreejs objects (see driver.js) and hears what the page has drawn.
+    """A writer of matrices into pythreejs objects (see driver.js).
 
-    renderer      what it draws with
-    nodes, plan   what it moves, and how (`Move`); set them with `move`
-    rows          how many rows a frame has
-    description   what the picture shows, in words, for those who cannot see it
+    It hears which frames the page has drawn.
+
+    renderer      draws the scene
+    nodes, plan   the objects that it moves, and how (`Move`); set them with `move`
+    rows          number of rows of a frame
+    description   the picture in words, for people who cannot see it
     on_page       is called with True when a page begins to look and with False when it has
                   drawn, from whichever thread hears of it
-    as_png        draws what was shown last, for a page that lacks pythreejs or WebGL
+    as_png        draws the last moment, for a page that lacks pythreejs or WebGL
     """
 
     _esm, _css = script("view/webgl/driver.js"), style("view/webgl/driver.css")
@@ -54,7 +56,10 @@ class Driver(Living, anywidget.AnyWidget):
         self.on_msg(self._hear)
 
     def move(self, moves: Sequence[Move], rows: int) -> None:
-        """Have the page move these from now on, by frames of so many rows."""
+        """Have the page move these from now on.
+
+        `rows` is the number of rows of a frame.
+        """
         with self.hold_sync():
             self.nodes, self.plan = [node for node, _ in moves], [how for _, how in moves]
             self.rows = rows
@@ -68,12 +73,18 @@ class Driver(Living, anywidget.AnyWidget):
 
     @property
     def ready(self) -> bool:
-        """Tell whether a page looks and can take a frame: few are under way to it."""
+        """Tell whether a page looks and can take a frame.
+
+        It can while few are under way to it.
+        """
         return self.seen and self.sent - self.drawn < AHEAD
 
     @property
     def unwatched(self) -> bool:
-        """Tell whether nobody looks: no page yet, or no sign has come back of many frames."""
+        """Tell whether nobody looks.
+
+        There is no page yet, or no sign has come back of many frames.
+        """
         waiting = self.sent - self.drawn >= AHEAD
         return not self.seen or (waiting and monotonic() - self.heard > PATIENCE)
 

@@ -10,7 +10,7 @@ from ipywidgets import Widget, widget_serialization
 from ikteach.view.stage.colours import SKY
 from ikteach.view.webgl.positions import Positions
 from ikteach.view.webgl.scene import Scene
-from ikteach.view.widgets.actor import Actor, in_words
+from ikteach.view.widgets.actor import Actor, message_of
 from ikteach.view.widgets.closing import Living
 from ikteach.view.widgets.page import script, style
 
@@ -83,7 +83,7 @@ class Handles(Living, anywidget.AnyWidget):
                 self.positions.drag(int(content["target"]), content["at"], going_on=going_on)
             self.alert = ""
         except Exception as error:  # of whoever follows the targets
-            self.alert = in_words(error)
+            self.alert = message_of(error)
         finally:
             if "number" in content:
                 self.send({"heard": content["number"]})

@@ -12,10 +12,10 @@ from ikteach.view.webgl.mesh import fused, shifted
 from ikteach.view.widgets.closing import close_all
 
 
-class Shown:
+class LayerObjects:
     """A layer and its objects.
 
-    moves   what moves, and by which rows, the layer's first being 0
+    moves   the objects that move, and by which rows, the layer's first being 0
     things  all its objects
     """
 
@@ -33,13 +33,16 @@ class Shown:
         self.paint(dark)
 
     def paint(self, dark: bool) -> None:
-        """Draw anew what has the colours of the paper."""
+        """Draw the grids anew, in the colours of the paper."""
         for node, grid in self._grids:
-            before, node.children = node.children, [objects.grid(grid, dark)]
+            before, node.children = node.children, [objects.floor_grid(grid, dark)]
             close_all(*before)
 
     def moves_from(self, row: int) -> list[Move]:
-        """List what moves, the layer's first row being this one of a frame."""
+        """List the moves, with the layer's first row at `row`.
+
+        That is a row of a frame.
+        """
         return [
             (thing, how + row if isinstance(how, int) else shifted(how, row))
             for thing, how in self.moves

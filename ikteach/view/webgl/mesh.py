@@ -18,9 +18,10 @@ Runs = list[list[int]]  # [row, points], for all points of a mesh
 
 
 def fused(mesh: Mesh) -> tuple[three.Object3D, Runs]:
-    """Make one object of a mesh; [row, points] say which row moves how many of its points.
+    """Make one object of a mesh, and its runs.
 
-    Shaded where its surfaces have normals, lines where they are wires.
+    A run [row, points] says which row moves how many of its points. It is shaded where its surfaces
+    have normals, lines where they are wires.
     """
     surfaces = [surface(piece.form, mesh.cut) for piece in mesh.pieces]
     firsts = np.cumsum([0, *(len(shape.points) for shape in surfaces)])

@@ -12,7 +12,10 @@ from ikteach.view.stage.forms import Ball, Box, Form, Grid, Label, Mesh
 
 
 def node(children: Sequence[three.Object3D] = ()) -> three.Group:
-    """Make something that the driver moves: its matrix is given, not made from position."""
+    """Make an object that the driver moves.
+
+    Its matrix is given, not made from position.
+    """
     return three.Group(children=list(children), matrixAutoUpdate=False)
 
 
@@ -33,14 +36,17 @@ def lights() -> list[three.Light]:
     ]
 
 
-def grid(form: Grid, dark: bool) -> three.GridHelper:
+def floor_grid(form: Grid, dark: bool) -> three.GridHelper:
     """Make the squares of the floor."""
     looks = paper(dark)
     return three.GridHelper(form.side, form.squares, looks.middle, looks.line)
 
 
 def marks(mesh: Mesh) -> list[three.Mesh]:
-    """Make each ball or box of a mesh a thing of its own; those that look alike share it."""
+    """Make an object per ball or box of a mesh.
+
+    Marks of one shape share it, and marks of one colour share how they look.
+    """
     shape = cache(_geometry)
 
     @cache
@@ -62,7 +68,10 @@ def _geometry(form: Form) -> three.BufferGeometry:
 
 
 def labels(labels: Sequence[Label]) -> list[three.Sprite]:
-    """Make words that always face the camera; the same words share how they look."""
+    """Make words that always face the camera.
+
+    The same words share how they look.
+    """
 
     @cache
     def look(text: str, colour: str) -> three.SpriteMaterial:

@@ -25,27 +25,39 @@ def _each(name: str, values: ArrayLike, shape: tuple[int, int]) -> Array:
         raise ValueError(f"{name} must be one number or {shape}, not {ends.shape}") from None
 
 
-class Keeper(Protocol):
-    """Whoever keeps the targets of a figure and can undo their moves: a `Session`, or `Moves`."""
+class TargetKeeper(Protocol):
+    """A keeper of a figure's targets that undoes their moves.
+
+    It is a `Session`, or `Moves`.
+    """
 
     targets: Array
 
     def aim(self, which: int, position: ArrayLike, *, going_on: bool = False) -> None:
-        """Put one target to a position (3,) [m]; `going_on`: as part of the move before."""
+        """Put one target to a position (3,) [m].
+
+        `going_on`: as part of the move before.
+        """
 
     def undo(self) -> object:
         """Take the last change back; LookupError if there is none."""
 
 
 class Moves:
-    """Targets (k, 3) [m] that nobody else keeps, and the moves that can be undone."""
+    """Targets (k, 3) [m] that nobody else keeps.
+
+    Their moves can be undone.
+    """
 
     def __init__(self, targets: Array) -> None:
         self.targets = targets
         self._before: deque[Array] = deque(maxlen=KEEP)
 
     def aim(self, which: int, position: ArrayLike, *, going_on: bool = False) -> None:
-        """Put one target to a position (3,) [m]; `going_on`: as part of the move before."""
+        """Put one target to a position (3,) [m].
+
+        `going_on`: as part of the move before.
+        """
         if not (going_on and self._before):
             self._before.append(self.targets)
         self.targets = self.targets.copy()
@@ -59,7 +71,9 @@ class Moves:
 
 
 class Positions:
-    """The positions of k targets [m], each within its range, as panel and handles move them.
+    """The positions of k targets [m], each within its range.
+
+    Panel and handles move them.
 
     names      of the targets
     keeper     keeps the targets; here is nothing but their ranges
@@ -74,7 +88,7 @@ class Positions:
     def __init__(
         self,
         names: Sequence[str],
-        keeper: Keeper,
+        keeper: TargetKeeper,
         low: ArrayLike,
         high: ArrayLike,
         *,
@@ -98,11 +112,16 @@ class Positions:
         return np.clip(self.keeper.targets, self.low, self.high)
 
     def on_change(self, tell: Callable[[int, Array], None]) -> None:
-        """Call tell(index, position (3,)) after each move, from whichever thread it came."""
+        """Call tell(index, position (3,)) after each move.
+
+        It is called from whichever thread the move came.
+        """
         self._listeners.append(tell)
 
     def move(self, index: int, position: ArrayLike, *, going_on: bool = False) -> None:
-        """Move one target; ValueError with the range if it would leave it.
+        """Move one target within its range.
+
+        ValueError with the range if it would leave it.
 
         `going_on` says that it is part of the move before: one `undo` takes back a whole drag.
         """
@@ -112,7 +131,10 @@ class Positions:
         self._moved(index)
 
     def drag(self, index: int, position: ArrayLike, *, going_on: bool = False) -> None:
-        """Move one target, and stop it at the edge of its range."""
+        """Move one target as far as its range allows.
+
+        It stops at the edge.
+        """
         inside = np.clip(np.asarray(position, dtype=float), self.low[index], self.high[index])
         self.move(index, inside, going_on=going_on)
 
@@ -141,7 +163,10 @@ class Positions:
             tell(index, self.now[index])
 
     def check(self, index: int, position: Array) -> None:
-        """Raise ValueError with the range if target `index` may not be there."""
+        """Raise ValueError if target `index` may not be there.
+
+        The message has the range, unless the shape is wrong.
+        """
         if position.shape != (3,):
             raise ValueError(f"{self.names[index]} needs three numbers, not {position.tolist()}")
         for axis, value, low, high in zip(

@@ -15,14 +15,14 @@ from ikteach.body import Effectors, Tree
 from ikteach.names import unknown
 from ikteach.view.raster.drawing import Drawing
 from ikteach.view.raster.still import png
-from ikteach.view.stage.basics import BASICS, Targets
+from ikteach.view.stage.basics import BASICS, TargetMarks
 from ikteach.view.stage.colours import paper
 from ikteach.view.stage.layers import LAYERS
 from ikteach.view.stage.stage import FIELD, About, Now, Stage
 from ikteach.view.webgl import objects
 from ikteach.view.webgl.cameras import Cameras
 from ikteach.view.webgl.driver import Driver
-from ikteach.view.webgl.layers import Shown
+from ikteach.view.webgl.layers import LayerObjects
 from ikteach.view.widgets import doors
 from ikteach.view.widgets.closing import Living
 from ikteach.view.widgets.lacking import Note
@@ -32,7 +32,9 @@ HIDDEN: Array = np.c_[1e-6 * np.eye(3), [0, -1e4, 0]]  # tiny, and far outside t
 
 
 class Scene(Living):
-    """One or several figures with k targets each; a `stage.View`. `widget` is what to display.
+    """One or several figures with k targets each; a `stage.View`.
+
+    Display its `widget`.
 
     names    one figure for each, with its name over its head (a lone figure needs none)
     apart    how far they stand from each other [m]; 0 lays them over each other, in which case
@@ -65,12 +67,12 @@ class Scene(Living):
         size = doors.scene(tree, effectors, names, apart, width, height)
         self.tree, self.effectors = tree, effectors
         self.stage = stage = Stage(tree, effectors, names, apart)
-        self._basics = [Shown(layer(stage), dark) for layer in BASICS]
-        self._over: dict[str, Shown] = {}
+        self._basics = [LayerObjects(layer(stage), dark) for layer in BASICS]
+        self._over: dict[str, LayerObjects] = {}
         self._groups: dict[str, three.Group] = {}
         self._on: set[str] = set()
         self._dark = dark
-        (self.targets,) = (one.things for one in self._basics if isinstance(one.layer, Targets))
+        (self.targets,) = (one.things for one in self._basics if isinstance(one.layer, TargetMarks))
         self._furnish(size)
         self._drawing = Drawing(stage, size)
         self.look_from(stage.side)
@@ -109,11 +111,14 @@ class Scene(Living):
         return {name: name in self._on for name in LAYERS}
 
     def switch(self, layer: str, on: bool = True) -> None:
-        """Draw a layer from the next `show` on, or do not; LookupError for an unknown name."""
+        """Draw a layer from the next `show` on, or do not.
+
+        LookupError for an unknown name.
+        """
         if layer not in LAYERS:
             raise LookupError(unknown("layer", layer, LAYERS))
         if on and layer not in self._over:
-            shown = self._over[layer] = Shown(LAYERS[layer](self.stage), self._dark)
+            shown = self._over[layer] = LayerObjects(LAYERS[layer](self.stage), self._dark)
             self._groups[layer] = three.Group(children=shown.things)
             self.scene.children = [*self.scene.children, self._groups[layer]]
         if on != (layer in self._on):
@@ -123,7 +128,10 @@ class Scene(Living):
             self._send()
 
     def look_from(self, side: str) -> None:
-        """Put the camera to one of `CAMERAS`, or to "plane": along the normal of its plane."""
+        """Put the camera to one of `CAMERAS`, or to "plane".
+
+        "plane" looks along the normal of the figure's plane.
+        """
         self.cameras.look_from(side)
         self._drawing.look_from(side)
 
@@ -141,7 +149,10 @@ class Scene(Living):
                 shown.paint(on)
 
     def show(self, theta: Array, targets: Array, **about: Unpack[About]) -> None:
-        """Draw poses and targets, and what the layers need; see `stage.View.show`."""
+        """Draw poses and targets; see `stage.View.show`.
+
+        `about` has the facts that layers need.
+        """
         self.now = self.stage.now(theta, targets, **about)
         self._change = about.get("change", 0)
         self._send()
@@ -156,7 +167,10 @@ class Scene(Living):
         self.widget.children = [*self.widget.children, *more]
 
     def still(self) -> Still:
-        """Draw what was shown last as a picture, which needs no kernel to be seen."""
+        """Draw the last moment as a picture.
+
+        It needs no kernel to be seen.
+        """
         if self.now is None:
             return Still(b"", self.driver.description)
         layers = [shown.layer for shown in self._drawn()]
@@ -184,7 +198,7 @@ class Scene(Living):
             rows[np.isnan(rows[:, 0, 3])] = HIDDEN
         self.driver.show(rows, self._change)
 
-    def _drawn(self) -> list[Shown]:
+    def _drawn(self) -> list[LayerObjects]:
         """List the layers that are drawn, in the order of their rows."""
         return [*self._basics, *(one for name, one in self._over.items() if name in self._on)]
 

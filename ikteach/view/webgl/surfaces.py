@@ -10,7 +10,10 @@ from ikteach.view.stage.shapes import Shape
 
 
 def surface(form: Form, cut: tuple[int, int]) -> Shape:
-    """Make the surface of a form, a ball of it cut into slices and rings of each half."""
+    """Make the surface of a form.
+
+    cut  slices of a ball in it, and rings of each half
+    """
     match form:
         case Ball():
             return _ball(form, shapes.globe(*cut))
@@ -29,7 +32,7 @@ def surface(form: Form, cut: tuple[int, int]) -> Shape:
         case Ring(thick):
             return shapes.ring(thick)
         case Wires():
-            return shapes.lines(form)
+            return shapes.segments(form)
         case _:
             raise TypeError(f"no surface is known of {form}")
 

@@ -13,10 +13,10 @@ from ikteach.view.stage.colours import effector_colour
 from ikteach.view.stage.lengths import Lengths, digits_of, round_step
 from ikteach.view.stage.stage import View
 from ikteach.view.webgl.handles import Handles
-from ikteach.view.webgl.positions import Keeper, Moves, Positions
+from ikteach.view.webgl.positions import Moves, Positions, TargetKeeper
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import doors
-from ikteach.view.widgets.actor import Actor, in_words
+from ikteach.view.widgets.actor import Actor, message_of
 from ikteach.view.widgets.closing import Living
 from ikteach.view.widgets.page import script, style
 
@@ -24,9 +24,11 @@ ROOM = 1.5  # [m] how far a target of a human may go from where it starts, each 
 
 
 class Targets(Living, anywidget.AnyWidget):
-    """A panel for the targets of a scene, and handles in it if it is a live one.
+    """A panel for the targets of a scene.
 
-    scene      shows them; it is not told, that is the business of `on_change`
+    A live scene has handles too.
+
+    scene      shows them, once a listener of `on_change` has it do so
     start      where the targets are at first, (k, 3) [m]; not if there is a session
     low, high  ranges [m], one number or (k, 3); None: as far as `ROOM` from the start
     session    keeps the targets and undoes their moves, as a `Session` does; if none is given, the
@@ -57,7 +59,7 @@ class Targets(Living, anywidget.AnyWidget):
         *,
         low: ArrayLike | None = None,
         high: ArrayLike | None = None,
-        session: Keeper | None = None,
+        session: TargetKeeper | None = None,
         undo: Callable[[], object] | None = None,
         slot: str | None = "targets",
     ) -> None:
@@ -106,11 +108,17 @@ class Targets(Living, anywidget.AnyWidget):
         return self._model.now
 
     def move(self, index: int, position: ArrayLike) -> None:
-        """Move one target; ValueError with the range if it would leave it."""
+        """Move one target within its range.
+
+        ValueError with the range if it would leave it.
+        """
         self._model.move(index, position)
 
     def follow(self, positions: ArrayLike) -> None:
-        """Show where the targets have gone by themselves; nobody is told, nothing is undone."""
+        """Show where the targets have gone by themselves.
+
+        Nobody hears of it, and it is no move to take back.
+        """
         self._model.keeper.targets = np.array(positions, dtype=float)
         self.agree()
 
@@ -126,7 +134,10 @@ class Targets(Living, anywidget.AnyWidget):
             self._model.undo()
 
     def on_change(self, tell: Callable[[int, Array], None]) -> Callable[[int, Array], None]:
-        """Call tell(index, position (3,)) after each move; may be used as a decorator."""
+        """Call tell(index, position (3,)) after each move.
+
+        It may be used as a decorator.
+        """
         self._model.on_change(tell)
         return tell
 
@@ -141,7 +152,7 @@ class Targets(Living, anywidget.AnyWidget):
             elif "target" in content:
                 self._set(content)
         except Exception as error:  # of whoever follows the targets
-            self.alert = in_words(error)
+            self.alert = message_of(error)
         finally:
             if "number" in content:
                 self.send({"heard": content["number"]})

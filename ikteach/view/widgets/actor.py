@@ -6,25 +6,25 @@ from collections.abc import Callable
 LONG = 600  # letters of an error that a person is shown
 
 
-def in_words(error: Exception) -> str:
-    """Say to a person what went wrong."""
+def message_of(error: Exception) -> str:
+    """Put an error into words for a person."""
     words = str(error)[:LONG] or type(error).__name__
     return f"That did not work: {words}"
 
 
 def attempt(action: Callable[[], object], tell: Callable[[str], object]) -> None:
-    """Do it, and tell in words what goes wrong."""
+    """Do it, and tell a person of an error."""
     try:
         action()
     except Exception as error:  # a student's own code may raise anything
-        tell(in_words(error))
+        tell(message_of(error))
 
 
 class Actor:
-    """Has things done by the loop in which it was made.
+    """A caller of actions, in the loop where it was made.
 
-    Callbacks of widgets may come on another thread, with a loop of its own; what they ask for is
-    handed on. Without a loop, as in a script, it is done at once.
+    Callbacks of widgets may come on another thread, with a loop of its own; their actions are
+    handed on. Without a loop, as in a script, they are done at once.
     """
 
     def __init__(self) -> None:

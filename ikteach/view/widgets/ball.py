@@ -7,8 +7,10 @@ from ikteach.view.widgets.closing import Living
 from ikteach.view.widgets.page import script, style
 
 
-class Ball(Living, anywidget.AnyWidget):
-    """A rotation ball: dragging it, or the arrow keys on it, turn what it stands for.
+class RotationBall(Living, anywidget.AnyWidget):
+    """A rotation ball, turned by dragging or the arrow keys.
+
+    The figure that it stands for turns with it.
 
     azimuth    degrees to the left of the front, −180 to 180
     elevation  degrees above the floor, −85 to 85

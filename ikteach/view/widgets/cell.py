@@ -11,13 +11,17 @@ from ikteach.view.widgets.lacking import Note
 from ikteach.view.widgets.picture import Still
 from ikteach.view.widgets.status import Status
 
+REFRESH = 0.2  # [s] between two updates of a figure that plays or works, fast enough for the eye
+
 
 class Cell(Living, widgets.VBox):  # type: ignore[misc]
-    """A column of widgets: guarded callbacks, a line on what goes on, a still picture beside it.
+    """A column of widgets with a status line.
+
+    Its callbacks are guarded, and a still picture stands beside it.
 
     slot    only one of a slot lives at a time: to run a cell again closes the older one
     note    where the still picture stands, among the `children`; None: there is no such picture
-    status  says what goes on and what went wrong
+    status  tells of progress and of errors
 
     A subclass makes its parts after `super().__init__`, and last puts them in place as `children`.
     """
@@ -28,16 +32,20 @@ class Cell(Living, widgets.VBox):  # type: ignore[misc]
         self._act = Actor()
 
     def still(self) -> Still | None:
-        """Draw it for a place without a kernel; None if there is nothing to see."""
+        """Draw it for a place without a kernel.
+
+        None if there is nothing to see.
+        """
         return None
 
     def acted(self) -> None:
         """Go on after a guarded callback, whether it failed or not."""
 
     def guarded(self, action: Callable[..., object]) -> Callable[..., None]:
-        """Wrap a callback: the notebook's loop does it, and `status` says what goes wrong.
+        """Wrap a callback, to run in the notebook's loop.
 
-        Callbacks may come on another thread; the session, and all else, stays as it was.
+        The status tells of an error; the session, and all else, stays as it was. Callbacks may come
+        on another thread.
         """
 
         def act(*arguments: Any) -> None:
@@ -47,13 +55,16 @@ class Cell(Living, widgets.VBox):  # type: ignore[misc]
         return lambda *arguments: self._act(lambda: act(*arguments))
 
     def attempt(self, action: Callable[[], object]) -> None:
-        """Do it now, and have `status` say what goes wrong; what was wrong is over."""
+        """Do it now, and tell of an error in `status`.
+
+        An error of before is over.
+        """
         with self.status.hold_sync():
             self.status.wrong = ""
             attempt(action, self.status.fail)
 
     def button(self, label: str, action: Callable[[], object], **look: Any) -> widgets.Button:
-        """Make a button that does this, guarded."""
+        """Make a button for this action, guarded."""
         made, act = widgets.Button(description=label, **look), self.guarded(action)
         made.on_click(lambda _: act())
         return made

@@ -23,11 +23,11 @@ _now = local()  # .parts: the list of what is made now, in this thread
 
 
 class Living:
-    """A widget in a cell, or a holder of some, that comes to its end in one way.
+    """A widget, or a holder of widgets, that ends in one way.
 
-    If making it fails, what it had made until then is closed. `close` closes all that it made and
-    all that is in it. Of all that have the same `slot` the newest lives: a cell that is run again
-    closes what it made before, once the new is there. A part of something else has no slot.
+    If making it fails, all that it had made is closed. `close` closes all that it made and all
+    that is in it. Of all that have the same `slot` the newest lives: a cell that is run again
+    closes the one of before, once the new one is there. A part of something else has no slot.
     """
 
     slot: str | None = None
@@ -40,10 +40,16 @@ class Living:
             cls.__init__ = _whole(cls.__init__)  # type: ignore[method-assign]
 
     def end(self) -> None:
-        """Stop what goes on by itself; called before its widgets are closed."""
+        """Stop everything that goes on by itself.
+
+        Called before its widgets are closed.
+        """
 
     def close(self) -> None:
-        """Stop it, and free all that the page and the kernel hold of it."""
+        """Stop it, and free all its widgets.
+
+        Neither the page nor the kernel holds anything of it afterwards.
+        """
         if occupant(self.slot) is self:
             _slots.pop(str(self.slot), None)
         itself = [self] if isinstance(self, widgets.Widget) else []
@@ -52,12 +58,15 @@ class Living:
 
 
 def occupant(slot: str | None) -> Living | None:
-    """Find the one that lives under this slot, if any."""
+    """Return the one that lives under this slot, if any."""
     return None if slot is None else _slots.get(slot)
 
 
 def close_all(*roots: widgets.Widget) -> None:
-    """Close these widgets and all that they hold, each once, and take them out of all others."""
+    """Close these widgets and all that they hold.
+
+    Each is closed once, and taken out of all others.
+    """
     gone = _below(roots)
     while bereft := _bereft_of(gone):
         gone |= {one.model_id: one for one in bereft}
@@ -100,9 +109,10 @@ def _whole(make: Callable[..., None]) -> Callable[..., None]:
 
 @contextmanager
 def making() -> Iterator[list[widgets.Widget]]:
-    """List the widgets that are made meanwhile, and close them should an error come.
+    """List the widgets that are made meanwhile.
 
-    May be used as a decorator, `@making()`, of a function that makes a figure of several parts.
+    Should an error come, they are closed. May be used as a decorator, `@making()`, of a function
+    that makes a figure of several parts.
     """
     outer, parts = getattr(_now, "parts", None), list[widgets.Widget]()
     _now.parts = parts

@@ -10,12 +10,14 @@ from ikteach.view.widgets.page import script, style
 
 
 class Curve(Living, anywidget.AnyWidget):
-    """A picture of curves with a line at the chosen place; a click or the arrow keys move it.
+    """A picture of curves with a line at the chosen place.
 
-    png, alt  the picture, and what it shows in words
+    A click or the arrow keys move the line.
+
+    png, alt  the picture, and the same in words
     span      where its axis begins and ends across the picture, 0..1
     places    where each thing lies on the axis, 0..1
-    labels    what each is called
+    labels    the name of each
     chosen    the number of the chosen one
     """
 

@@ -17,7 +17,10 @@ WIDEST = 8192  # pixels that a picture may have at a side
 
 
 def a(kind: type[T], name: str, value: Any) -> T:
-    """Give back what is of this kind; TypeError names what is not."""
+    """Give back a value of this kind.
+
+    TypeError names a value of another kind.
+    """
     if not isinstance(value, kind):
         what = kind.__name__ if kind.__name__.endswith("s") else f"a {kind.__name__}"
         raise TypeError(f"{name} must be {what}, not {shown(value)}")
@@ -25,13 +28,19 @@ def a(kind: type[T], name: str, value: Any) -> T:
 
 
 def has(name: str, value: Any, what: str, *parts: str) -> None:
-    """TypeError unless the value has these parts, as `what` has."""
+    """Refuse a value without these parts.
+
+    TypeError says that it must be `what`, which has them.
+    """
     if isinstance(value, type) or not all(hasattr(value, part) for part in parts):
         raise TypeError(f"{name} must be {what}, not {shown(value)}")
 
 
 def body(tree: Any, effectors: Any) -> Figure:
-    """Check a tree and the effectors on it; TypeError or ValueError says what is wrong."""
+    """Check a tree and the effectors on it.
+
+    TypeError or ValueError names the fault.
+    """
     a(Tree, "the tree", tree), a(Effectors, "the effectors", effectors)
     if effectors.carried.shape[-1] != len(tree):
         joints = effectors.carried.shape[-1]
@@ -40,7 +49,10 @@ def body(tree: Any, effectors: Any) -> Figure:
 
 
 def figure(value: Any) -> Figure:
-    """Check a figure, or the pair of its parts; TypeError says what is wrong."""
+    """Check a figure, or the pair of its parts.
+
+    TypeError or ValueError names the fault.
+    """
     if not (isinstance(value, tuple) and len(value) == 2):
         raise TypeError(
             "a figure is its tree and its effectors, as figures.human() gives them, not "
@@ -52,9 +64,12 @@ def figure(value: Any) -> Figure:
 def scene(
     tree: Any, effectors: Any, names: Any, apart: Any, width: Any, height: Any
 ) -> tuple[int, int]:
-    """Check the parts of a scene; its width and height [pixels]."""
+    """Check the parts of a scene.
+
+    Gives its width and height [pixels].
+    """
     body(tree, effectors)
-    if not words("the names of the figures", names):
+    if not texts("the names of the figures", names):
         raise ValueError("a scene needs at least one figure")
     if apart is not None:
         within("apart", apart, 0, np.inf)
@@ -64,7 +79,10 @@ def scene(
 
 
 def within(name: str, value: Any, low: float, high: float) -> float:
-    """Check one finite number from low to high, as a float; ValueError names what is not."""
+    """Check one finite number from low to high.
+
+    Gives it as a float; ValueError names a value that is none.
+    """
     real = isinstance(value, Real) and not isinstance(value, bool | np.bool_)
     if not (real and low <= value <= high and value < np.inf):
         allowed = f"{low:g} or more" if high == np.inf else f"from {low:g} to {high:g}"
@@ -74,28 +92,40 @@ def within(name: str, value: Any, low: float, high: float) -> float:
 
 
 def text(name: str, value: Any) -> str:
-    """Check a text; TypeError names what is none."""
+    """Check a text.
+
+    TypeError names a value that is none.
+    """
     if not isinstance(value, str):
         raise TypeError(f"{name} must be text, not {shown(value)}")
     return value
 
 
-def words(name: str, values: Any) -> list[str]:
-    """Check a list of texts, and not one text; TypeError names what is none."""
+def texts(name: str, values: Any) -> list[str]:
+    """Check a list of texts, and not one text.
+
+    TypeError names a value that is none.
+    """
     if isinstance(values, str) or not isinstance(values, Iterable):
         raise TypeError(f"{name} must be a list of texts, not {shown(values)}")
     return [text(f"each of {name}", value) for value in values]
 
 
 def folder(value: Any) -> Path:
-    """Check a folder, by its path; TypeError names what is none."""
+    """Check a folder, by its path.
+
+    TypeError names a value that is none.
+    """
     if not isinstance(value, str | os.PathLike):
         raise TypeError(f"folder must be a path, not {shown(value)}")
     return Path(value)
 
 
 def named(name: str, values: Any, door: Callable[[str, Any], object]) -> dict[str, Any]:
-    """Check a {text: value} whose values pass a door; TypeError names what does not."""
+    """Check a {text: value} whose values pass a door.
+
+    TypeError names a key that is no text; the door names a value that does not pass.
+    """
     if not isinstance(values, Mapping):
         raise TypeError(f"{name} must be a {{name: …}}, not {shown(values)}")
     for key, value in values.items():

@@ -37,9 +37,9 @@ STYLE = style_tag("view/widgets/lacking.css")
 
 
 class Note:
-    """The picture, and why it does not move, for a page that cannot run our scripts.
+    """A picture, for a page that cannot run our scripts.
 
-    `widget` is to be put among the widgets that it stands in for.
+    It says why it does not move. `widget` is to be put among the widgets that it stands in for.
     """
 
     def __init__(self) -> None:
@@ -47,7 +47,10 @@ class Note:
         self.widget.add_class("ikteach-note")
 
     def beside(self, bundle: dict[str, Any], still: Still) -> dict[str, Any]:
-        """Give the output of a cell, whose widgets this note is among, its still picture."""
+        """Add the still picture to the output of a cell.
+
+        This note is among the widgets of the cell.
+        """
         words = in_place_of(still)
         self.widget.value = STYLE + words
         picture = {"image/png": still.png} if still.png else {}

@@ -35,14 +35,20 @@ def script(path: str) -> str:
 
 @cache
 def style(*paths: str) -> str:
-    """Read style sheets of the package, after that which all widgets share."""
+    """Read style sheets of the package.
+
+    The one that all widgets share comes first.
+    """
     return "".join(
         (PACKAGE / path).read_text("utf-8") for path in ("view/widgets/page.css", *paths)
     )
 
 
 def style_tag(path: str) -> Markup:
-    """Read a style sheet of the package as HTML, for pages without our scripts."""
+    """Read a style sheet of the package as HTML.
+
+    For pages without our scripts.
+    """
     return Markup("<style>\n{}</style>").format(Markup((PACKAGE / path).read_text("utf-8")))
 
 

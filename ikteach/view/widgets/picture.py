@@ -16,7 +16,10 @@ from ikteach.view.widgets.page import script, style
 
 
 class Picture(Living, anywidget.AnyWidget):
-    """A PNG and its text alternative; both can change at any time."""
+    """A PNG and its text alternative.
+
+    Both can change at any time.
+    """
 
     _esm, _css = script("view/widgets/picture.js"), style("view/widgets/picture.css")
     png = traitlets.Bytes(b"").tag(sync=True)
@@ -25,7 +28,10 @@ class Picture(Living, anywidget.AnyWidget):
 
 @dataclass(frozen=True)
 class Still:
-    """A PNG with its text alternative, for the output of a cell; it needs no kernel to be seen."""
+    """A PNG with its text alternative, for a cell's output.
+
+    It needs no kernel to be seen.
+    """
 
     png: bytes = field(repr=False)
     alt: str

@@ -12,7 +12,10 @@ from ikteach.view.widgets.closing import Living
 
 
 class Prose(Living, widgets.HTML):  # type: ignore[misc]
-    """A piece of HTML; a `value` that is not `Markup` is text, and is shown as it is."""
+    """A piece of HTML.
+
+    A `value` that is not `Markup` is text, and is shown as it is.
+    """
 
     @traitlets.validate("value")
     def _safe(self, proposal: Any) -> Markup:
@@ -26,7 +29,10 @@ def table(frame: pd.DataFrame, decimals: str, *, kind: str = "ikteach-table") ->
 
 
 def grid(heads: Sequence[object], rows: Iterable[Sequence[object]], title: str = "") -> Markup:
-    """Write rows of words as a table whose first column names them."""
+    """Write rows of words as a table.
+
+    The first column names the rows.
+    """
     head, first, cell = map(Markup, ("<th>{}</th>", '<th scope="row">{}</th>', "<td>{}</td>"))
     nothing = Markup()
     body = nothing.join(

@@ -8,18 +8,18 @@ from ikteach.view.widgets.page import script, style
 
 
 class Status(Living, anywidget.AnyWidget):
-    """A sentence on what goes on, and one on what went wrong."""
+    """A sentence on progress, and one on the last error."""
 
     _esm, _css = script("view/widgets/status.js"), style("view/widgets/status.css")
     said = traitlets.Unicode("").tag(sync=True)
     wrong = traitlets.Unicode("").tag(sync=True)
 
     def say(self, words: str) -> None:
-        """Say what goes on; what was wrong is over."""
+        """Tell of progress; an error of before is over."""
         with self.hold_sync():
             self.said, self.wrong = words, ""
 
     def fail(self, words: str) -> None:
-        """Say what went wrong."""
+        """Tell of an error."""
         with self.hold_sync():
             self.said, self.wrong = "", words

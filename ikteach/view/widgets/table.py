@@ -10,7 +10,7 @@ from ikteach.view.widgets.page import script, style
 
 
 class Rows(Living, anywidget.AnyWidget):
-    """A table whose rows can be chosen with a click or the arrow keys.
+    """A table of rows, chosen by click or arrow keys.
 
     header, rows  words; chosen: the number of the chosen row
     """

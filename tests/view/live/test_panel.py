@@ -27,18 +27,19 @@ def panel_of(control, heard, **options):
 
 
 @pytest.mark.parametrize(
-    ("control", "value"),
+    ("make", "value"),
     [
-        (slider("a", 0.5, 0.0, 1.0, 0.1), 0.6),
-        (slider("a", 1, 1, 10, 1), 2),
-        (log_slider("a", 0.1, -3, 0), 0.2),
-        (choice("a", ["x", "y"]), "y"),
-        (dropdown("a", ["x", "y"], "y"), "x"),
-        (tick_box("a"), True),
-        (play_button(), False),
+        (lambda: slider("a", 0.5, 0.0, 1.0, 0.1), 0.6),
+        (lambda: slider("a", 1, 1, 10, 1), 2),
+        (lambda: log_slider("a", 0.1, -3, 0), 0.2),
+        (lambda: choice("a", ["x", "y"]), "y"),
+        (lambda: dropdown("a", ["x", "y"], "y"), "x"),
+        (lambda: tick_box("a"), True),
+        (play_button, False),
     ],
 )
-def test_a_control_acts_for_a_person_and_not_for_a_program(control, value, heard):
+def test_a_control_acts_for_a_person_and_not_for_a_program(make, value, heard):
+    control = make()
     panel, before = panel_of(control, heard), control.value
     panel.put(one=value)
     panel.put(one=before)
@@ -56,15 +57,16 @@ def test_a_button_acts_and_has_no_value(heard):
 
 
 @pytest.mark.parametrize(
-    ("control", "rounded"),
+    ("make", "rounded"),
     [
-        (slider("γ max", math.pi / 4, 0.05, math.pi, 0.01), 0.79),
-        (slider("near the end", 0.999, 0.0, 1.0, 0.3), 0.9),
-        (log_slider("λ", 0.11, -3, 0, 0.02), 10**-0.96),
+        (lambda: slider("γ max", math.pi / 4, 0.05, math.pi, 0.01), 0.79),
+        (lambda: slider("near the end", 0.999, 0.0, 1.0, 0.3), 0.9),
+        (lambda: log_slider("λ", 0.11, -3, 0, 0.02), 10**-0.96),
     ],
 )
-def test_what_the_page_rounds_is_no_change(control, rounded, heard):
+def test_what_the_page_rounds_is_no_change(make, rounded, heard):
     """A page brings a slider to the nearest of its steps as soon as it shows it."""
+    control = make()
     panel, exact = panel_of(control, heard), control.value
     control.value = rounded
     assert heard == []

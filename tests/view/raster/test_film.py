@@ -10,7 +10,14 @@ from ikteach import figures, forward, locate
 from ikteach.body.rotation import sticks
 from ikteach.motion.live.session import Session
 from ikteach.view.raster.film import Film, film, shot, shots
-from ikteach.view.raster.raycast import Eye, box, draw, ellipsoid, rod, square
+from ikteach.view.raster.raycast import (
+    Eye,
+    draw,
+    homogeneous,
+    solid_box,
+    solid_ellipsoid,
+    solid_rod,
+)
 from ikteach.view.stage.colours import EFFECTOR_COLOURS, SHIRT, SKIN, TROUSERS
 from ikteach.view.stage.stage import CAMERAS
 
@@ -36,7 +43,7 @@ def hue(pixels, colour):
 
 
 def test_a_ball_covers_its_outline_and_no_more():
-    seen = covered(picture([ellipsoid((0, 0, 0), (0.5,) * 3, RED, 0)]))
+    seen = covered(picture([solid_ellipsoid((0, 0, 0), (0.5,) * 3, RED, 0)]))
     # The cone of rays that touch a ball of radius r at distance d has tan = r / √(d² − r²).
     radius = 0.5 / np.sqrt(3**2 - 0.5**2) / (2 * np.tan(np.radians(22.5)) / 120)
     y, x = np.mgrid[:120, :120] + 0.5
@@ -49,12 +56,12 @@ def test_every_solid_is_found_within_its_window():
     eye = Eye((1.2, 0.4, 2.0), (0, 0, 0), (160, 120))
     for _ in range(20):
         start, end = rng.normal(size=(2, 3)) * 0.4
-        alone = rod(start, end, 0.12, 0.05, RED, 0)
+        alone = solid_rod(start, end, 0.12, 0.05, RED, 0)
         wide = alone._replace(balls=np.array([[0, 0, 0, 50.0]] * 2))
         assert_array_equal(
             picture([alone], eye=eye, size=(160, 120)), picture([wide], eye=eye, size=(160, 120))
         )
-        ball = ellipsoid(start, (0.3, 0.1, 0.2), BLUE, 0)
+        ball = solid_ellipsoid(start, (0.3, 0.1, 0.2), BLUE, 0)
         wide = ball._replace(balls=np.array([[0, 0, 0, 50.0]] * 2))
         assert_array_equal(
             picture([ball], eye=eye, size=(160, 120)), picture([wide], eye=eye, size=(160, 120))
@@ -62,8 +69,8 @@ def test_every_solid_is_found_within_its_window():
 
 
 def test_what_is_nearer_hides_what_is_behind_in_any_order():
-    near = ellipsoid((0, 0, 1), (0.2,) * 3, RED, 0)
-    far = ellipsoid((0, 0, -1), (0.6,) * 3, BLUE, 0)
+    near = solid_ellipsoid((0, 0, 1), (0.2,) * 3, RED, 0)
+    far = solid_ellipsoid((0, 0, -1), (0.6,) * 3, BLUE, 0)
     for parts in ([near, far], [far, near]):
         pixels = picture(parts)
         assert hue(pixels, RED)[60, 60]
@@ -71,19 +78,19 @@ def test_what_is_nearer_hides_what_is_behind_in_any_order():
 
 
 def test_a_rod_ends_where_it_ends_and_frames_move_it():
-    upright = rod(np.zeros(3), np.array([0.0, 1, 0]), 0.1, 0.1, RED, 0)
+    upright = solid_rod(np.zeros(3), np.array([0.0, 1, 0]), 0.1, 0.1, RED, 0)
     seen = covered(picture([upright]))
     rows = np.flatnonzero(seen.any(axis=1))
     assert rows[-1] < 64
     assert rows[0] == pytest.approx(60 - 1 / (3 * np.tan(np.radians(22.5)) / 60), abs=3)
-    lying = square(sticks(np.zeros((1, 3)), np.array([[1.0, 0, 0]])))
+    lying = homogeneous(sticks(np.zeros((1, 3)), np.array([[1.0, 0, 0]])))
     seen = covered(picture([upright], frames=lying))
     assert seen[:, 62:].any()
     assert not seen[:, :55].any()
 
 
 def test_a_box_has_straight_sides():
-    seen = covered(picture(box(0.4, RED, 0)))
+    seen = covered(picture(solid_box(0.4, RED, 0)))
     rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
     assert seen[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1].all()
     half = 0.4 / (3 - 0.4) / (2 * np.tan(np.radians(22.5)) / 120)
@@ -91,16 +98,16 @@ def test_a_box_has_straight_sides():
 
 
 def test_what_is_behind_the_eye_is_not_seen():
-    assert not covered(picture([ellipsoid((0, 0, 6), (0.5,) * 3, RED, 0)])).any()
+    assert not covered(picture([solid_ellipsoid((0, 0, 6), (0.5,) * 3, RED, 0)])).any()
     behind = STILL.copy()
     behind[0, 2, 3] = 6
-    assert not covered(picture(box(0.2, RED, 0), frames=behind)).any()
+    assert not covered(picture(solid_box(0.2, RED, 0), frames=behind)).any()
 
 
 def test_the_eye_projects_where_it_draws():
     eye = Eye((2.0, 1.0, 2.5), (0, 0, 0), (160, 120))
     point = np.array([0.3, -0.2, 0.1])
-    seen = covered(picture([ellipsoid(point, (0.06,) * 3, RED, 0)], eye=eye, size=(160, 120)))
+    seen = covered(picture([solid_ellipsoid(point, (0.06,) * 3, RED, 0)], eye=eye, size=(160, 120)))
     y, x = (axis.mean() + 0.5 for axis in np.nonzero(seen))
     assert_allclose(eye.project(point)[0], [x, y], atol=0.6)
 
