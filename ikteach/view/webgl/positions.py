@@ -15,7 +15,7 @@ KEEP = 200  # moves that can be undone where there is no session
 
 
 def _each(name: str, values: ArrayLike, shape: tuple[int, int]) -> Array:
-    """Ends of ranges (k, 3), of one number or of what fits; ValueError names what does not."""
+    """Give ends of ranges (k, 3), of one number or of what fits; ValueError names what does not."""
     ends = numbers(name, values)
     if np.isnan(ends).any():
         raise ValueError(f"{name} has no number where it should")
