@@ -69,7 +69,7 @@ def test_a_movie_is_recorded_while_the_notebook_goes_on(book: Notebook, lab: Lab
     fill(book, "Width [pixels]", "320")
     fill(book, "Height", "240")
     fill(book, "Seconds", "1.5")
-    fill(book, "Frames a s", "20")
+    fill(book, "Frames per s", "20")
     book.press("Start recording")
     wait_for(book, SAID, "Recording")
     assert book.kernel("6 * 7") == 42  # a cell runs meanwhile

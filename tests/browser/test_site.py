@@ -235,8 +235,7 @@ def test_a_chapter_opens_as_it_is_and_finds_our_package(lite: Lite) -> None:
 
 def test_the_kernel_has_no_threads_and_our_code_knows(lite: Lite) -> None:
     assert "can't start new thread" in lite.run("import threading as t; t.Thread().start()")
-    # The deadline of a check stops an endless loop without a signal. (Without numpy, the rooms
-    # above it are only names here.)
+    # The deadline of a check stops an endless loop without a signal.
     said = lite.run(f"""{ROOMS}
 from ikteach.course.deadline import TooLongError, Tracer, deadline
 def answer():
@@ -251,7 +250,13 @@ except TooLongError:
     assert said == "True\n"
 
 
-ROOMS = """import importlib.util, sys, types
+# The rooms that need numpy are only names here, and numpy is a name with its types.
+ROOMS = """import sys, types
+from unittest.mock import MagicMock
+if "numpy" not in sys.modules:
+    kinds = {name: type(name, (), {}) for name in ("ndarray", "generic")}
+    sys.modules["numpy"] = MagicMock(**kinds)
+    sys.modules["numpy.typing"] = sys.modules["numpy"].typing
 for room in ("ikteach", "ikteach.view", "ikteach.course"):
     if room not in sys.modules:
         module = sys.modules[room] = types.ModuleType(room)
@@ -272,8 +277,6 @@ print(sorted(record.entries("quiz")), record.entry("quiz", "00.x")["answer"])
 def test_widgets_live_and_webgl_draws(lite: Lite) -> None:
     """An ipywidgets slider moves a pythreejs box; its words are an anywidget of ours."""
     lite.show(f"""{ROOMS}
-from unittest.mock import MagicMock
-sys.modules["numpy"] = MagicMock(ndarray=type("ndarray", (), {{}}))  # pythreejs imports it
 import asyncio, ipywidgets as widgets, pythreejs as three
 from ikteach.view.widgets.status import Status
 
