@@ -15,6 +15,7 @@ A body is a table of joints, a pose an array, a method a function of the Jacobia
 
 from ikteach.body import Effectors, Frames, Joint, Tree, figures, forward, jacobian, locate
 from ikteach.motion import Gait, Step, Track, gait, reachable, step, track
+from ikteach.motion.solve import Solution, solve
 from ikteach.solvers import (
     SOLVERS,
     conditioning,
@@ -36,6 +37,7 @@ __all__ = [
     "Frames",
     "Gait",
     "Joint",
+    "Solution",
     "Step",
     "Track",
     "Tree",
@@ -53,6 +55,7 @@ __all__ = [
     "pseudoinverse",
     "reachable",
     "sdls",
+    "solve",
     "step",
     "track",
     "transpose",

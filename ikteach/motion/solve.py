@@ -1,0 +1,275 @@
+"""One call to a pose: targets in, and the pose that meets them, or how near it came and why."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ikteach.arrays import Array, ArrayLike, Index, Mask, finite
+from ikteach.body import Effectors, Frames, Tree, forward, jacobian, locate
+from ikteach.motion.step import Cap, LimitRule, checked, hold, solver_of, whole
+from ikteach.solvers import Solver, dls_following, name_of
+
+POOL = 128  # poses that are worked on at once: their Jacobians stay in the processor's cache
+SWARM = 24  # poses drawn for each restart; the one nearest to the targets begins
+WORTH = 0.01  # share by which the error must fall to count as progress …
+PATIENCE = 12  # … at least once in so many iterations
+
+REASONS = (
+    "arrived",
+    "stands still: no joint helps",
+    "at limits: the joints that would help stand at theirs",
+    "out of patience: more iterations may help",
+)
+ARRIVED, STILL, AT_LIMITS, IMPATIENT = range(len(REASONS))
+
+
+class Solution(NamedTuple):
+    """The poses that were found, the best of each search.
+
+    theta       (..., n)  finite and, unless limits are ignored, within them [rad]
+    error       (..., k)  distance to target [m]
+    iterations  (...)     steps that were taken, those of restarts with them
+    why         (...)     why the search ended, as the place in `REASONS`
+    """
+
+    theta: Array
+    error: Array
+    iterations: Index
+    why: Index
+
+    @property
+    def converged(self) -> Mask:
+        """Whether every effector is within the tolerance of its target, (...)."""
+        return np.equal(self.why, ARRIVED)
+
+    @property
+    def reason(self) -> "str | np.ndarray[tuple[int, ...], np.dtype[np.str_]]":
+        """Why the search ended, in words: a string, or an array (...) of them for a batch."""
+        words = np.array(REASONS)[self.why]
+        return words if words.ndim else str(words)
+
+
+class Search(NamedTuple):
+    """What all poses of one call have in common. `advance(theta, e, J)` gives (theta, held)."""
+
+    tree: Tree
+    effectors: Effectors
+    advance: Callable[[Array, Array, Array], tuple[Array, Mask]]
+    tolerance: float
+    most: int
+
+
+def solve(
+    tree: Tree,
+    effectors: Effectors,
+    targets: ArrayLike,
+    solver: Solver | str = dls_following,
+    *,
+    theta: ArrayLike | None = None,
+    tolerance: float = 1e-4,
+    most: int = 100,
+    limits: LimitRule = hold,
+    max_step: float | None = None,
+    cap: Cap = whole,
+    restarts: int = 0,
+    seed: int = 0,
+    weights: ArrayLike | None = None,
+) -> Solution:
+    """Find a pose that meets targets (..., k, 3) [m], from the pose θ (..., n).
+
+    solver      a function of (J, e), or the name of one of `SOLVERS`
+    theta       the start [rad], the rest pose if not given; brought within its limits first
+    tolerance   how near every effector must come to its target [m]
+    most        iterations at most, from each start
+    limits      what happens at a limit: `hold`, `clip` or `ignore`
+    max_step    [rad]: no joint turns further in one iteration; `cap` says what is shortened
+    restarts    searches from other poses, drawn at random within the limits, where the first fails
+    seed        of these draws: equal seeds give equal poses
+    weights     (..., k) how much each target counts against the others, 1 if not given
+
+    Leading dimensions are batches: each pose stops when it has arrived, and the others go on.
+    ValueError if a shape is wrong or a number not finite; FloatingPointError if the solver's answer
+    is not finite. Source: the loop of thesis 5.1 without its clock.
+    """
+    theta, targets = checked(tree, tree.rest if theta is None else theta, effectors, targets)
+    n, k = len(tree), len(effectors)
+    batch = theta.shape[:-1]
+    if batch != targets.shape[:-2]:
+        batch = np.broadcast_shapes(batch, targets.shape[:-2])
+        theta = np.broadcast_to(theta, (*batch, n))
+        targets = np.broadcast_to(targets, (*batch, k, 3))
+    starts, goals = theta.reshape(-1, n), targets.reshape(-1, k, 3)
+    starts = np.minimum(np.maximum(starts, tree.lower), tree.upper)
+    search = Search(
+        tree, effectors, _advance(tree, effectors, solver, limits, max_step, cap), tolerance, most
+    )
+    found = _descend(search, starts, goals)
+    rng: np.random.Generator | None = None
+    for _ in range(restarts):
+        left = np.flatnonzero(found.why)  # those that have not ARRIVED
+        if not len(left):
+            break
+        rng = rng or np.random.default_rng(seed)
+        again = _descend(search, _elsewhere(tree, effectors, goals[left], rng), goals[left])
+        found = _better(found, again, left)
+    return Solution(
+        found.theta.reshape(*batch, n), found.error.reshape(*batch, k),
+        found.iterations.reshape(batch), found.why.reshape(batch),
+    )  # fmt: skip
+
+
+def _advance(
+    tree: Tree, effectors: Effectors, solver: Solver | str, limits: LimitRule,
+    max_step: float | None, cap: Cap,
+) -> Callable[[Array, Array, Array], tuple[Array, Mask]]:  # fmt: skip
+    """One iteration as a function of θ, e and J; what does not change is looked up here."""
+    function, free = solver_of(solver), tree.mobility
+    all_free = bool((free == 1).all())
+
+    def ask(J: Array, e: Array, s: Array | None) -> Array:
+        dtheta = function(J, e) if s is None else s * function(J * s[..., None, :], e)
+        if not finite(dtheta):
+            raise FloatingPointError(f"{name_of(solver)} gave a step that is not finite")
+        return dtheta if max_step is None else cap(dtheta, max_step, effectors.chains)
+
+    def advance(theta: Array, e: Array, J: Array) -> tuple[Array, Mask]:
+        dtheta = ask(J, e, None if all_free else free)
+        return limits(tree, theta, dtheta, lambda held: ask(J, e, free * ~held))
+
+    return advance
+
+
+@dataclass
+class _Pool:
+    """The poses that are worked on, p of them, and what is known of each.
+
+    rows    (p,)       its place in the whole batch
+    theta   (p, n)     the pose; goals (p, k, 3) its targets
+    count   (p,)       iterations so far
+    held    (p, n)     which joints a limit stopped in the last one
+    best    (p, n)     the best pose so far, with its squared distances (p, k) and their sum (p,)
+    mark    (p,)       that sum when it was last asked whether it still falls
+    """
+
+    rows: Index
+    theta: Array
+    goals: Array
+    count: Index
+    held: Mask
+    best: Array
+    squares: Array
+    least: Array
+    mark: Array
+
+    @classmethod
+    def of(cls, rows: Index, starts: Array, goals: Array) -> "_Pool":
+        """The pool of these rows, at their starts."""
+        p, k = len(rows), goals.shape[1]
+        least = np.full(p, np.inf)
+        return cls(
+            rows, starts[rows], goals[rows], np.zeros(p, np.intp), np.zeros(starts[rows].shape, bool),
+            starts[rows], np.full((p, k), np.inf), least, least,
+        )  # fmt: skip
+
+    def remember(self, squares: Array) -> None:
+        """Keep the pose where it is better than all before it."""
+        size = np.add.reduce(squares, axis=-1)
+        better = size < self.least
+        if np.count_nonzero(better) == len(better):
+            self.best, self.squares, self.least = self.theta, squares, size
+        else:
+            self.best = np.where(better[:, None], self.theta, self.best)
+            self.squares = np.where(better[:, None], squares, self.squares)
+            self.least = np.where(better, size, self.least)
+
+    def stands_still(self) -> Mask:
+        """Whether the error has hardly fallen since this was asked the last time, (p,)."""
+        still = self.least > (1 - WORTH) * self.mark
+        self.mark = self.least
+        return still
+
+    def keep(self, those: Mask) -> None:
+        """Let the others go."""
+        for name, values in vars(self).items():
+            setattr(self, name, values[those])
+
+    def join(self, other: "_Pool") -> None:
+        """Take the others in."""
+        for name, values in vars(self).items():
+            setattr(self, name, np.concatenate([values, getattr(other, name)]))
+
+
+def _descend(search: Search, starts: Array, goals: Array) -> Solution:
+    """Search from every start (b, n) for its goals (b, k, 3).
+
+    At most POOL poses are worked on at once; who is done makes room for the next.
+    """
+    tree, effectors, advance, tolerance, most = search
+    b, k = goals.shape[:2]
+    out = Solution(np.empty_like(starts), np.empty((b, k)), np.empty(b, np.intp), np.empty(b, np.intp))
+    waiting = np.arange(b)
+    pool, waiting = _Pool.of(waiting[:POOL], starts, goals), waiting[POOL:]
+    rounds = 0
+    while len(pool.rows):
+        frames = forward(tree, pool.theta)
+        s = locate(frames, effectors)
+        e = pool.goals - s
+        squares = np.vecdot(e, e)
+        pool.remember(squares)
+        rounds += 1
+        arrived = np.maximum.reduce(squares, axis=-1) <= tolerance * tolerance
+        done = arrived | (pool.count >= most)
+        if rounds % PATIENCE == 0:
+            done |= pool.stands_still()
+        if finished := np.count_nonzero(done):
+            _hand_in(out, pool, done if finished < len(done) else slice(None), arrived, most)
+            if finished == len(done) == b:
+                break
+            stay = ~done
+            pool.keep(stay)
+            frames, e, s = Frames(*(part[stay] for part in frames)), e[stay], s[stay]
+        if len(pool.rows):
+            J = jacobian(tree, frames, effectors, at=s)
+            pool.theta, pool.held = advance(pool.theta, e.reshape(len(e), 3 * k), J)
+            pool.count = pool.count + 1
+        if len(waiting) and (room := POOL - len(pool.rows)):
+            pool.join(_Pool.of(waiting[:room], starts, goals))
+            waiting = waiting[room:]
+    return out
+
+
+def _hand_in(
+    out: Solution, pool: _Pool, done: Mask | slice, arrived: Mask, most: int
+) -> None:
+    """Write down what was found by those that are done, and why they ended."""
+    rows, there = pool.rows[done], arrived[done]
+    out.theta[rows] = pool.best[done]
+    out.error[rows] = np.sqrt(pool.squares[done])
+    out.iterations[rows] = pool.count[done]
+    out.why[rows] = ARRIVED
+    if np.count_nonzero(there) < len(there):
+        stopped = np.where(pool.held[done].any(axis=-1), AT_LIMITS, STILL)
+        failed = np.where(pool.count[done] >= most, IMPATIENT, stopped)
+        out.why[rows] = np.where(there, ARRIVED, failed)
+
+
+def _elsewhere(tree: Tree, effectors: Effectors, goals: Array, rng: np.random.Generator) -> Array:
+    """A start for each of the goals (b, k, 3): of SWARM random poses the nearest, (b, n)."""
+    half = np.where(tree.slide, 1.0, np.pi)
+    lower = np.where(np.isfinite(tree.lower), tree.lower, np.minimum(tree.rest, tree.upper) - half)
+    upper = np.where(np.isfinite(tree.upper), tree.upper, np.maximum(tree.rest, tree.lower) + half)
+    swarm = rng.uniform(lower, upper, size=(SWARM, len(tree)))
+    s = locate(forward(tree, swarm), effectors)
+    away = np.square(goals[:, None] - s).sum(axis=(-1, -2))  # (b, SWARM)
+    return swarm[away.argmin(axis=-1)]
+
+
+def _better(found: Solution, again: Solution, rows: Index) -> Solution:
+    """The better of both for these rows; iterations add up."""
+    won = again.converged | (again.error.max(axis=-1) < found.error[rows].max(axis=-1))
+    at = rows[won]
+    found.theta[at], found.error[at], found.why[at] = again.theta[won], again.error[won], again.why[won]
+    found.iterations[rows] += again.iterations
+    return found
