@@ -208,7 +208,9 @@ def _descend(search: Search, starts: Array, goals: Array) -> Solution:
     """
     tree, effectors, advance, tolerance, most = search
     b, k = goals.shape[:2]
-    out = Solution(np.empty_like(starts), np.empty((b, k)), np.empty(b, np.intp), np.empty(b, np.intp))
+    out = Solution(
+        np.empty_like(starts), np.empty((b, k)), np.empty(b, np.intp), np.empty(b, np.intp)
+    )
     waiting = np.arange(b)
     pool, waiting = _Pool.of(waiting[:POOL], starts, goals), waiting[POOL:]
     rounds = 0
@@ -240,9 +242,7 @@ def _descend(search: Search, starts: Array, goals: Array) -> Solution:
     return out
 
 
-def _hand_in(
-    out: Solution, pool: _Pool, done: Mask | slice, arrived: Mask, most: int
-) -> None:
+def _hand_in(out: Solution, pool: _Pool, done: Mask | slice, arrived: Mask, most: int) -> None:
     """Write down what was found by those that are done, and why they ended."""
     rows, there = pool.rows[done], arrived[done]
     out.theta[rows] = pool.best[done]
@@ -270,6 +270,10 @@ def _better(found: Solution, again: Solution, rows: Index) -> Solution:
     """The better of both for these rows; iterations add up."""
     won = again.converged | (again.error.max(axis=-1) < found.error[rows].max(axis=-1))
     at = rows[won]
-    found.theta[at], found.error[at], found.why[at] = again.theta[won], again.error[won], again.why[won]
+    found.theta[at], found.error[at], found.why[at] = (
+        again.theta[won],
+        again.error[won],
+        again.why[won],
+    )
     found.iterations[rows] += again.iterations
     return found

@@ -2,8 +2,7 @@
 
     python tests/bench/peers.py [--problems N] [--markdown]
 
-Every peer gets the same bodies, starts, targets and tolerance, one after the other on the same
-problem, in one process on one BLAS thread; process time is counted. Each is called through its
+Every peer gets the same bodies, starts, targets and tolerance, in turns, in one process on one BLAS thread; process time is counted. Each is called through its
 documented interface, with targets that are positions only; the poses that it gives are judged by
 our forward kinematics. Two hand-written loops around compiled Jacobians (pinocchio, MuJoCo) show
 what compiled code leaves to be gained. A peer that is not installed is skipped by name: the extra
@@ -33,6 +32,7 @@ from ikteach import Effectors, Joint, Tree, dls, figures, forward, locate, solve
 from ikteach.body.tree import GROUND
 
 MOST = 200  # iterations, for those whose iterations can be bounded
+BLOCK = 10  # problems, after which the next peer has its turn
 DAMPING = 0.1  # of the hand-written loops [m/rad]
 
 
@@ -192,10 +192,7 @@ def mjcf(c):
         )
 
     inside = "".join(map(body, children[GROUND]))
-    return (
-        '<mujoco><compiler angle="radian"/>'
-        f"<worldbody>{inside}</worldbody></mujoco>"
-    )
+    return f'<mujoco><compiler angle="radian"/><worldbody>{inside}</worldbody></mujoco>'
 
 
 def mujoco_model(c):
@@ -357,7 +354,7 @@ def roboticstoolbox_compiled(c):
             _moved(targets[0]), q0=start, tol=0.5 * c.within**2, mask=[1, 1, 1, 0, 0, 0],
             joint_limits=True, ilimit=30, slimit=10,
         )  # fmt: skip
-        return found[0], found[2]
+        return found.q, found.iterations
 
     return one
 
@@ -372,9 +369,7 @@ def pybullet_solver(c):
         file.write_text(urdf(c), encoding="utf-8")
         with _quiet():
             body = pybullet.loadURDF(str(file), useFixedBase=True, physicsClientId=client)
-    names = [
-        pybullet.getJointInfo(body, i)[1].decode() for i in range(pybullet.getNumJoints(body))
-    ]
+    names = [pybullet.getJointInfo(body, i)[1].decode() for i in range(pybullet.getNumJoints(body))]
     moving = [name for name in names if name in c.tree.names]
     order = np.array([moving.index(name) for name in c.tree.names])
     ends = [names.index(f"to {name}") for name in c.effectors.names]
@@ -408,7 +403,9 @@ def urdf(c):
     links, joints = [_link("ground")], []
     for j, name in enumerate(c.tree.names):
         parent = "ground" if c.tree.parents[j] == GROUND else c.tree.names[c.tree.parents[j]]
-        x, axis = (" ".join(f"{v:.17g}" for v in row) for row in (c.tree.offsets[j], c.tree.axes[j]))
+        x, axis = (
+            " ".join(f"{v:.17g}" for v in row) for row in (c.tree.offsets[j], c.tree.axes[j])
+        )
         links.append(_link(f"link {name}"))
         parent = parent if parent == "ground" else f"link {parent}"
         joints.append(
@@ -463,7 +460,7 @@ PEERS = {  # name: (the package it comes from, how it is asked)
 
 
 class Result(NamedTuple):
-    """How a peer did on a case: share solved within limits, iterations (median), µs (mean)."""
+    """How a peer did on a case: share solved within limits, iterations and µs (medians)."""
 
     peer: str
     solved: float
@@ -472,23 +469,28 @@ class Result(NamedTuple):
 
 
 def race(c, peers):
-    """Every peer on every problem of the case, in turns."""
+    """Every peer on every problem of the case; they take turns after every BLOCK problems."""
     taken = {name: [] for name in peers}
-    steps = {name: [] for name in peers}
-    solved = {name: [] for name in peers}
-    for start, targets in zip(c.starts, c.targets, strict=True):
+    found = {name: [] for name in peers}
+    for first in range(0, len(c.starts), BLOCK):
+        block = list(
+            zip(c.starts[first : first + BLOCK], c.targets[first : first + BLOCK], strict=True)
+        )
         for name, one in peers.items():
             began = process_time_ns()
-            theta, iterations = one(start.copy(), targets.copy())
-            taken[name].append((process_time_ns() - began) / 1000)
-            steps[name].append(iterations)
-            off = np.linalg.norm(locate(forward(c.tree, theta), c.effectors) - targets, axis=-1)
-            inside = (theta >= c.tree.lower - 1e-6) & (theta <= c.tree.upper + 1e-6)
-            solved[name].append(off.max() <= 1.001 * c.within and inside.all())
-    return [
-        Result(name, np.mean(solved[name]), np.median(steps[name]), np.mean(taken[name]))
-        for name in peers
-    ]
+            answers = [one(start, targets) for start, targets in block]
+            taken[name].append((process_time_ns() - began) / 1000 / len(block))
+            found[name] += answers
+    return [judged(c, name, found[name], np.median(taken[name])) for name in peers]
+
+
+def judged(c, name, found, micros):
+    """The poses that a peer gave, held against the targets and the limits."""
+    theta = np.array([pose for pose, _ in found])
+    off = np.linalg.norm(locate(forward(c.tree, theta), c.effectors) - c.targets, axis=-1)
+    inside = (theta >= c.tree.lower - 1e-6) & (theta <= c.tree.upper + 1e-6)
+    solved = (off <= 1.001 * c.within).all(axis=-1) & inside.all(axis=-1)
+    return Result(name, solved.mean(), np.median([steps for _, steps in found]), micros)
 
 
 def batches(c, peers, rounds=3):
@@ -496,9 +498,7 @@ def batches(c, peers, rounds=3):
     taken = {name: [] for name in ("ikteach.solve", *peers)}
     for _ in range(rounds):
         began = process_time_ns()
-        found = solve(
-            c.tree, c.effectors, c.targets, theta=c.starts, tolerance=c.within, most=MOST
-        )
+        found = solve(c.tree, c.effectors, c.targets, theta=c.starts, tolerance=c.within, most=MOST)
         taken["ikteach.solve"].append((process_time_ns() - began) / 1000 / len(c.starts))
         for name, one in peers.items():
             began = process_time_ns()

@@ -1,0 +1,52 @@
+"""Cyclic coordinate descent: one joint after the other, from the tips to the ground.
+
+The method of first programs and of many games, named in thesis 4.4. It needs no Jacobian: each
+joint alone turns as far as brings its effectors nearest to their targets, and the next one below
+starts from there.
+"""
+
+import numpy as np
+
+from ikteach.arrays import Array
+from ikteach.body import Effectors, Frames, Tree, locate
+
+
+def ccd(
+    J: Array, e: Array, *, tree: Tree, effectors: Effectors, frames: Frames, low: Array, high: Array
+) -> Array:
+    """Δθ (..., n) [rad] of one sweep over all joints; J (..., 3k, n) only says which are locked.
+
+    e                      (..., 3k)  t − s [m]
+    tree, effectors, frames           the body, and where its joints are
+    low, high              (..., n)   how far each joint may turn down and up [rad]
+    With a = s − p and b = t − p for each effector that a hinge carries, the turn φ about its axis v
+    that brings all a nearest to b has tan φ = Σ v·(a × b) / Σ (a·b − (a·v)(b·v)). A slide moves by
+    the mean of v·(t − s).
+    Source: Wang & Chen 1991, IEEE Trans. Robotics and Automation 7:489; thesis 4.4.
+    """
+    s = locate(frames, effectors)
+    t = s + e.reshape(*e.shape[:-1], len(effectors), 3)
+    batch = np.broadcast_shapes(t.shape[:-2], low.shape[:-1])
+    s = np.broadcast_to(s, (*batch, *s.shape[-2:])).copy()
+    dtheta = np.zeros((*batch, len(tree)))
+    for j in reversed(range(len(tree))):  # a joint comes after what it hangs from
+        ours = effectors.carried[:, j]
+        if not ours.any():
+            continue
+        v, p = frames.axes[..., j, None, :], frames.positions[..., j, None, :]
+        a, b = s[..., ours, :] - p, t[..., ours, :] - p
+        if tree.slide[j]:
+            turn = np.vecdot(v, b - a).mean(axis=-1)
+        else:
+            across = np.vecdot(v, np.cross(a, b)).sum(axis=-1)
+            along = (np.vecdot(a, b) - np.vecdot(a, v) * np.vecdot(b, v)).sum(axis=-1)
+            turn = np.arctan2(across, along)
+        turn = np.minimum(np.maximum(turn, low[..., j]), high[..., j])
+        dtheta[..., j] = turn
+        turn = turn[..., None, None]
+        if tree.slide[j]:
+            s[..., ours, :] += turn * v
+        else:  # Rodrigues
+            c, along_v = np.cos(turn), np.vecdot(v, a)[..., None] * v
+            s[..., ours, :] = p + c * a + np.sin(turn) * np.cross(v, a) + (1 - c) * along_v
+    return dtheta
