@@ -50,3 +50,6 @@ def ccd(
             c, along_v = np.cos(turn), np.vecdot(v, a)[..., None] * v
             s[..., ours, :] = p + c * a + np.sin(turn) * np.cross(v, a) + (1 - c) * along_v
     return dtheta
+
+
+ccd.wants = ("tree", "effectors", "frames", "low", "high")  # type: ignore[attr-defined]

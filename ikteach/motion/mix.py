@@ -1,7 +1,7 @@
 """Several methods as one solver: one for each effector, or one for each pose of a batch."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from ikteach.arrays import Array, frozen
 from ikteach.body import Effectors
 from ikteach.checks import shown
 from ikteach.motion.checks import solver_of
+from ikteach.motion.here import Here, placed, wants
 from ikteach.names import unknown
 from ikteach.solvers import Solver, ask, name_of
 
@@ -54,6 +55,15 @@ class Mix:
         names = dict(zip(effectors.names, chosen, strict=True))
         return cls(tuple(distinct), frozen(share), names)
 
+    @property
+    def wants(self) -> tuple[str, ...]:
+        """The fields of `Here` that its methods take."""
+        return tuple({name for solver in self.solvers for name in wants(solver)})
+
+    def placed(self, here: Here) -> "Mix":
+        """Give each of its methods what it wants."""
+        return replace(self, solvers=tuple(placed(solver, here) for solver in self.solvers))
+
     def __call__(self, J: Array, e: Array) -> Array:
         """Δθ (..., n) for J (..., 3k, n) and e (..., 3k); the errors are those of `ask`."""
         parts = zip(self.solvers, self.share, strict=True)
@@ -75,6 +85,15 @@ class PerPose:
     def __init__(self, solvers: Iterable[Solver | str]) -> None:
         self.solvers = [solver_of(solver) for solver in solvers]
         self._J: Array | None = None
+
+    @property
+    def wants(self) -> tuple[str, ...]:
+        """The fields of `Here` that its methods take."""
+        return tuple({name for solver in self.solvers for name in wants(solver)})
+
+    def placed(self, here: Here) -> "PerPose":
+        """Give each of its methods what it wants at its own pose."""
+        return PerPose(placed(solver, here.at(i)) for i, solver in enumerate(self.solvers))
 
     def __call__(self, J: Array, e: Array) -> Array:
         """Δθ (p, n); the errors are those of `ask`, and name the method."""

@@ -6,14 +6,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ikteach.arrays import Array, ArrayLike, Index, Mask, finite
+from ikteach.arrays import Array, ArrayLike, Index, Mask
 from ikteach.body import Effectors, Frames, Tree, forward, jacobian, locate
-from ikteach.motion.step import Cap, LimitRule, checked, hold, solver_of, whole
-from ikteach.solvers import Solver, dls_following, name_of
+from ikteach.checks import count, function, number, numbers, shown
+from ikteach.motion.here import Here, placed, wants
+from ikteach.motion.step import Bounds, Cap, LimitRule, checked, hold, ignore, solver_of, whole
+from ikteach.solvers import Solver, ask, dls_following
 
 POOL = 128  # poses that are worked on at once: their Jacobians stay in the processor's cache
 SWARM = 24  # poses drawn for each restart; the one nearest to the targets begins
-WORTH = 0.01  # share by which the error must fall to count as progress …
+WORTH = 1e-3  # share by which the error must fall to count as progress …
 PATIENCE = 12  # … at least once in so many iterations
 
 REASONS = (
@@ -52,11 +54,11 @@ class Solution(NamedTuple):
 
 
 class Search(NamedTuple):
-    """What all poses of one call have in common. `advance(theta, e, J)` gives (theta, held)."""
+    """What all poses of one call have in common. `advance(θ, frames, e, J)` gives (θ, held)."""
 
     tree: Tree
     effectors: Effectors
-    advance: Callable[[Array, Array, Array], tuple[Array, Mask]]
+    advance: Callable[[Array, Frames, Array, Array], tuple[Array, Mask]]
     tolerance: float
     most: int
 
@@ -87,13 +89,19 @@ def solve(
     max_step    [rad]: no joint turns further in one iteration; `cap` says what is shortened
     restarts    searches from other poses, drawn at random within the limits, where the first fails
     seed        of these draws: equal seeds give equal poses
-    weights     (..., k) how much each target counts against the others, 1 if not given
+    weights     (k,) how much each target counts against the others, 1 if not given
 
     Leading dimensions are batches: each pose stops when it has arrived, and the others go on.
     ValueError if a shape is wrong or a number not finite; FloatingPointError if the solver's answer
     is not finite. Source: the loop of thesis 5.1 without its clock.
     """
     theta, targets = checked(tree, tree.rest if theta is None else theta, effectors, targets)
+    tolerance, most = number("tolerance", tolerance), count("most", most, least=0)
+    restarts, seed = count("restarts", restarts, least=0), count("seed", seed, least=0)
+    if max_step is not None:
+        max_step = number("max_step", max_step)
+    function("limits", limits)
+    function("cap", cap)
     n, k = len(tree), len(effectors)
     batch = theta.shape[:-1]
     if batch != targets.shape[:-2]:
@@ -102,9 +110,10 @@ def solve(
         targets = np.broadcast_to(targets, (*batch, k, 3))
     starts, goals = theta.reshape(-1, n), targets.reshape(-1, k, 3)
     starts = np.minimum(np.maximum(starts, tree.lower), tree.upper)
-    search = Search(
-        tree, effectors, _advance(tree, effectors, solver, limits, max_step, cap), tolerance, most
-    )
+    if weights is not None:
+        weights = _row_weights(effectors, weights)
+    advance = _advance(tree, effectors, solver_of(solver), limits, max_step, cap, weights)
+    search = Search(tree, effectors, advance, tolerance, most)
     found = _descend(search, starts, goals)
     rng: np.random.Generator | None = None
     for _ in range(restarts):
@@ -121,22 +130,30 @@ def solve(
 
 
 def _advance(
-    tree: Tree, effectors: Effectors, solver: Solver | str, limits: LimitRule,
-    max_step: float | None, cap: Cap,
-) -> Callable[[Array, Array, Array], tuple[Array, Mask]]:  # fmt: skip
+    tree: Tree, effectors: Effectors, solver: Solver, limits: LimitRule,
+    max_step: float | None, cap: Cap, weights: Array | None,
+) -> Callable[[Array, Frames, Array, Array], tuple[Array, Mask]]:  # fmt: skip
     """One iteration as a function of θ, e and J; what does not change is looked up here."""
-    function, free = solver_of(solver), tree.mobility
-    all_free = bool((free == 1).all())
+    free = tree.mobility
+    bounds = Bounds(tree.lower, tree.upper)
 
-    def ask(J: Array, e: Array, s: Array | None) -> Array:
-        dtheta = function(J, e) if s is None else s * function(J * s[..., None, :], e)
-        if not finite(dtheta):
-            raise FloatingPointError(f"{name_of(solver)} gave a step that is not finite")
-        return dtheta if max_step is None else cap(dtheta, max_step, effectors.chains)
+    def advance(theta: Array, frames: Frames, e: Array, J: Array) -> tuple[Array, Mask]:
+        here = solver
+        if wants(solver):
+            low, high = (-np.inf, np.inf) if limits is ignore else bounds
+            here = placed(solver, Here(tree, effectors, frames, low - theta, high - theta))
 
-    def advance(theta: Array, e: Array, J: Array) -> tuple[Array, Mask]:
-        dtheta = ask(J, e, None if all_free else free)
-        return limits(tree, theta, dtheta, lambda held: ask(J, e, free * ~held))
+        if weights is not None:
+            J, e = J * weights[:, None], e * weights
+
+        def wish(s: Array | None) -> Array:
+            """What the solver wants of joints with mobility s, None: all free."""
+            dtheta = ask(here, J, e) if s is None else s * ask(here, J * s[..., None, :], e)
+            return dtheta if max_step is None else cap(dtheta, max_step, effectors.chains)
+
+        return limits(
+            bounds, theta, wish(None if tree.free else free), lambda held, _: wish(free * ~held)
+        )
 
     return advance
 
@@ -166,12 +183,10 @@ class _Pool:
     @classmethod
     def of(cls, rows: Index, starts: Array, goals: Array) -> "_Pool":
         """The pool of these rows, at their starts."""
-        p, k = len(rows), goals.shape[1]
-        least = np.full(p, np.inf)
-        return cls(
-            rows, starts[rows], goals[rows], np.zeros(p, np.intp), np.zeros(starts[rows].shape, bool),
-            starts[rows], np.full((p, k), np.inf), least, least,
-        )  # fmt: skip
+        theta, targets, p = starts[rows], goals[rows], len(rows)
+        count, held, least = np.zeros(p, np.intp), np.zeros(theta.shape, bool), np.full(p, np.inf)
+        squares = np.full(targets.shape[:-1], np.inf)
+        return cls(rows, theta, targets, count, held, theta, squares, least, least)
 
     def remember(self, squares: Array) -> None:
         """Keep the pose where it is better than all before it."""
@@ -199,6 +214,16 @@ class _Pool:
         """Take the others in."""
         for name, values in vars(self).items():
             setattr(self, name, np.concatenate([values, getattr(other, name)]))
+
+
+def _row_weights(effectors: Effectors, weights: ArrayLike) -> Array:
+    """The weight of each row of J, (3k,)."""
+    each, k = numbers("weights", weights), len(effectors)
+    if each.shape != (k,):
+        raise ValueError(f"weights needs one number per effector, ({k},), not {each.shape}")
+    if not ((each >= 0) & (each < np.inf)).all():
+        raise ValueError(f"weights must be 0 or more, and finite, not {shown(weights)}")
+    return each.repeat(3)
 
 
 def _descend(search: Search, starts: Array, goals: Array) -> Solution:
@@ -234,7 +259,7 @@ def _descend(search: Search, starts: Array, goals: Array) -> Solution:
             frames, e, s = Frames(*(part[stay] for part in frames)), e[stay], s[stay]
         if len(pool.rows):
             J = jacobian(tree, frames, effectors, at=s)
-            pool.theta, pool.held = advance(pool.theta, e.reshape(len(e), 3 * k), J)
+            pool.theta, pool.held = advance(pool.theta, frames, e.reshape(len(e), 3 * k), J)
             pool.count = pool.count + 1
         if len(waiting) and (room := POOL - len(pool.rows)):
             pool.join(_Pool.of(waiting[:room], starts, goals))

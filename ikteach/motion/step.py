@@ -20,6 +20,7 @@ from ikteach.motion.checks import (
     mobility_of,
     solver_of,
 )
+from ikteach.motion.here import Here, placed, wants
 from ikteach.motion.rules import Bounds, Cap, LimitRule, clamp_error, hold, whole
 from ikteach.solvers import Solver, ask
 
@@ -108,11 +109,14 @@ def step(
 
     all_free = free is tree.mobility and tree.free
     question = _Question(solver, theta, J, aim, free, all_free, max_step, cap, effectors.chains)
+    bounds = Bounds(tree, theta, question.turn())
+    if wants(solver):
+        question.solver = placed(solver, Here.of(tree, effectors, frames, theta, limits, bounds))
     wanted = question.answer(free, aim)
     if wanted.ndim <= len(batch):  # there is a cap for each of a batch
         wanted = np.broadcast_to(wanted, (*batch, len(tree)))
     allowed = question.shorten(wanted)
-    to, held = limits(Bounds(tree, theta, question.turn()), theta, allowed, question.again)
+    to, held = limits(bounds, theta, allowed, question.again)
     capped = np.zeros(batch, dtype=bool) if question.capped is None else question.capped
     if max_step is not None and np.count_nonzero(held):
         beyond = (to < tree.lower) | (to > tree.upper)  # it would be back but for the cap

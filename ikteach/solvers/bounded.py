@@ -37,6 +37,9 @@ def bounded(
     return _pivot(H, g, low, high).reshape(*batch, n)
 
 
+bounded.wants = ("low", "high")  # type: ignore[attr-defined]
+
+
 def _pivot(H: Array, g: Array, low: Array, high: Array) -> Array:
     """The least of ½xᵀHx − gᵀx with low ≤ x ≤ high, (b, n), for H (b, n, n) positive definite."""
     b, n = g.shape

@@ -9,12 +9,13 @@ import numpy as np
 from ikteach.arrays import Array, ArrayLike, Index
 from ikteach.body import Effectors, Tree, forward, jacobian, locate
 from ikteach.body.tree import GROUND
-from ikteach.checks import common_batch, number, numbers, shown
 from ikteach.checks import count as whole_number
+from ikteach.checks import number, numbers, shown
 from ikteach.motion.checks import checked
 from ikteach.motion.live.log import of_run
 from ikteach.motion.methods import Methods, methods_of
 from ikteach.motion.rules import Cap, whole
+from ikteach.motion.solve import solve
 from ikteach.motion.step import step
 from ikteach.motion.track import Track
 from ikteach.solvers import SOLVERS, Solver, name_of, transpose
@@ -152,20 +153,12 @@ def iterations(
     """Count the steps until every effector reaches its target: (...).
 
     targets (..., k, 3) are reached `within` some metres. Infinite where `most` steps are not
-    enough. `options` go to `step`.
+    enough, or bring it no nearer. `options` go to `solve`.
     """
-    pose, goal = checked(tree, tree.rest if theta is None else theta, effectors, targets)
-    within, most = number("within", within), whole_number("most", most, least=0)
-    batch = common_batch("theta and targets", pose.shape[:-1], goal.shape[:-2])
-    pose = np.broadcast_to(pose, (*batch, len(tree)))
-    count = np.full(batch, np.inf)
-    for n in range(most + 1):
-        gap = np.linalg.norm(goal - locate(forward(tree, pose), effectors), axis=-1)
-        count = np.where((gap <= within).all(axis=-1), np.minimum(count, n), count)
-        if n == most or np.isfinite(count).all():
-            break
-        pose = step(tree, pose, effectors, goal, solver, **options).theta
-    return count
+    found = solve(
+        tree, effectors, targets, solver, theta=theta, tolerance=within, most=most, **options
+    )
+    return np.where(found.converged, found.iterations, np.inf)
 
 
 def arrivals(

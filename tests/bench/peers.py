@@ -2,11 +2,12 @@
 
     python tests/bench/peers.py [--problems N] [--markdown]
 
-Every peer gets the same bodies, starts, targets and tolerance, in turns, in one process on one BLAS thread; process time is counted. Each is called through its
-documented interface, with targets that are positions only; the poses that it gives are judged by
-our forward kinematics. Two hand-written loops around compiled Jacobians (pinocchio, MuJoCo) show
-what compiled code leaves to be gained. A peer that is not installed is skipped by name: the extra
-`peers` has them all.
+Every peer gets the same bodies, starts, targets and tolerance, in turns of a few problems, in one
+process on one BLAS thread; process time is counted. Each is called through its documented
+interface, with targets that are positions only; the poses that it gives are judged by our forward
+kinematics. Two hand-written loops around compiled Jacobians (pinocchio, MuJoCo) show what compiled
+code leaves to be gained. A peer that is not installed is skipped by name: the extra `peers` has
+them all.
 """
 
 import os
@@ -28,7 +29,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ikteach import Effectors, Joint, Tree, dls, figures, forward, locate, solve
+from ikteach import Effectors, Joint, Tree, figures, forward, locate, solve
 from ikteach.body.tree import GROUND
 
 MOST = 200  # iterations, for those whose iterations can be bounded
@@ -467,6 +468,12 @@ class Result(NamedTuple):
     iterations: float
     micros: float
 
+    def row(self, base):
+        """Its row of the table; `base` is what ours takes [µs]."""
+        steps = "–" if np.isnan(self.iterations) else f"{self.iterations:.0f}"
+        ratio = f"{self.micros / base:.2f}"
+        return [self.peer, f"{self.solved:.1%}", steps, f"{self.micros:.0f}", ratio]
+
 
 def race(c, peers):
     """Every peer on every problem of the case; they take turns after every BLOCK problems."""
@@ -571,10 +578,7 @@ def main():
         results = race(c, ready(c))
         base = results[0].micros
         print(f"\n{c.name}: {len(c.starts)} problems, one at a time\n")
-        rows = [
-            [r.peer, f"{r.solved:.1%}", f"{r.iterations:.0f}", f"{r.micros:.0f}", f"{r.micros / base:.2f}"]
-            for r in results
-        ]  # fmt: skip
+        rows = [result.row(base) for result in results]
         table(["", "solved", "iterations", "µs a solve", "of ours"], rows, options.markdown)
     loops = {"MuJoCo, loop by hand", "pinocchio, loop by hand"}
     for near, sizes in ((0.1, (1000,)), (0.5, (100, 1000))):

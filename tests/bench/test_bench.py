@@ -3,6 +3,7 @@
 import damping
 import fuzz
 import numpy as np
+import peers
 import reach
 import speed
 from numpy.testing import assert_allclose
@@ -73,3 +74,30 @@ def test_a_broken_promise_is_seen():
     assert {"back"} <= fuzz.violations(tree, out, stays, **told).keys()
     further = done._replace(theta=out + 0.01, dtheta=0 * out + 0.01)
     assert {"further out"} <= fuzz.violations(tree, out, further, **told).keys()
+
+
+def test_peers_judges_and_prints_what_is_here(capsys, monkeypatch):
+    only = {"ikteach.solve": peers.PEERS["ikteach.solve"], "nobody": ("nobody", _absent)}
+    monkeypatch.setattr(peers, "PEERS", only)
+    c = peers.case("", figures.human(), 1.8e-3, 0.1, 12)
+    (ours,) = peers.race(c, peers.ready(c))
+    assert "skipped: nobody" in capsys.readouterr().out
+    assert ours.solved == 1
+    spoilt = peers.judged(c, "spoilt", [(start + 9, 1) for start in c.starts], 1.0)
+    assert spoilt.solved == 0
+
+
+def _absent(c):
+    raise ImportError("no module named nobody")
+
+
+def test_every_peer_gets_the_same_body():
+    c = peers.case("", figures.human(), 1.8e-3, 0.1, 1)
+    tree, effectors = c.tree, c.effectors
+    joints = peers.ET.fromstring(peers.urdf(c)).findall("joint")
+    assert [joint.get("name") for joint in joints] == [
+        *tree.names,
+        *(f"to {name}" for name in effectors.names),
+    ]
+    bodies = peers.ET.fromstring(peers.mjcf(c)).iter("body")
+    assert {body.get("name") for body in bodies} == set(tree.names)

@@ -1,0 +1,63 @@
+"""Methods that look beyond J and e: at the body itself, or at how far its joints may turn.
+
+Such a method names in `wants` what else it takes, by keyword: fields of `Here`. `step` gives it.
+"""
+
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ikteach.arrays import Array
+from ikteach.body import Effectors, Frames, Tree
+from ikteach.motion.rules import Bounds, LimitRule, ignore
+from ikteach.solvers import Solver
+
+
+class Here(NamedTuple):
+    """Where a step is asked for.
+
+    tree, effectors  the body
+    frames           where its joints are
+    low, high        (..., n) how far each joint may turn down and up in this step [rad]
+    """
+
+    tree: Tree
+    effectors: Effectors
+    frames: Frames
+    low: Array
+    high: Array
+
+    @classmethod
+    def of(
+        cls,
+        tree: Tree,
+        effectors: Effectors,
+        frames: Frames,
+        theta: Array,
+        limits: LimitRule,
+        bounds: Bounds,
+    ) -> "Here":
+        """Look around from pose θ; where limits are ignored, joints may turn any way."""
+        low, high = (-np.inf, np.inf) if limits is ignore else (bounds.lower, bounds.upper)
+        return cls(tree, effectors, frames, low - theta, high - theta)
+
+    def at(self, i: int) -> "Here":
+        """Pose i of a batch (p, n)."""
+        frames = Frames(*(part[i] for part in self.frames))
+        low, high = (end[i] if end.ndim > 1 else end for end in (self.low, self.high))
+        return Here(self.tree, self.effectors, frames, low, high)
+
+
+def wants(solver: Any) -> tuple[str, ...]:
+    """Say which fields of `Here` a solver takes, also one with its options bound."""
+    while isinstance(solver, partial):
+        solver = solver.func
+    return getattr(solver, "wants", ())
+
+
+def placed(solver: Any, here: Here) -> Solver:
+    """Bind what a solver wants, so that it is a function of J and e."""
+    if hasattr(solver, "placed"):  # it is made of others
+        return solver.placed(here)
+    return partial(solver, **{name: getattr(here, name) for name in wants(solver)})
