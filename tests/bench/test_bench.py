@@ -1,5 +1,7 @@
 """The benches run; what they measure is for whoever runs them by hand."""
 
+import xml.etree.ElementTree as ET
+
 import damping
 import fuzz
 import numpy as np
@@ -94,10 +96,10 @@ def _absent(c):
 def test_every_peer_gets_the_same_body():
     c = peers.case("", figures.human(), 1.8e-3, 0.1, 1)
     tree, effectors = c.tree, c.effectors
-    joints = peers.ET.fromstring(peers.urdf(c)).findall("joint")
+    joints = ET.fromstring(peers.urdf(c)).findall("joint")
     assert [joint.get("name") for joint in joints] == [
         *tree.names,
         *(f"to {name}" for name in effectors.names),
     ]
-    bodies = peers.ET.fromstring(peers.mjcf(c)).iter("body")
+    bodies = ET.fromstring(peers.mjcf(c)).iter("body")
     assert {body.get("name") for body in bodies} == set(tree.names)
