@@ -8,9 +8,11 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Index, Mask
 from ikteach.body import Effectors, Frames, Tree, forward, jacobian, locate
+from ikteach.body.forward import pose
 from ikteach.checks import count, function, number, numbers, shown
 from ikteach.motion.here import Here, placed, wants
-from ikteach.motion.step import Bounds, Cap, LimitRule, checked, hold, ignore, solver_of, whole
+from ikteach.motion.step import Bounds, Cap, LimitRule, hold, ignore, solver_of, whole
+from ikteach.motion.step import goals as checked_targets
 from ikteach.solvers import Solver, ask, dls_following
 
 POOL = 128  # poses that are worked on at once: their Jacobians stay in the processor's cache
@@ -95,7 +97,8 @@ def solve(
     ValueError if a shape is wrong or a number not finite; FloatingPointError if the solver's answer
     is not finite. Source: the loop of thesis 5.1 without its clock.
     """
-    theta, targets = checked(tree, tree.rest if theta is None else theta, effectors, targets)
+    theta = pose(tree, tree.rest if theta is None else theta)
+    targets = checked_targets(effectors, targets)
     tolerance, most = number("tolerance", tolerance), count("most", most, least=0)
     restarts, seed = count("restarts", restarts, least=0), count("seed", seed, least=0)
     if max_step is not None:
@@ -145,6 +148,8 @@ def _advance(
 
         if weights is not None:
             J, e = J * weights[:, None], e * weights
+        J.setflags(write=False)  # no solver may change them
+        e.setflags(write=False)
 
         def wish(s: Array | None) -> Array:
             """What the solver wants of joints with mobility s, None: all free."""

@@ -364,12 +364,14 @@ def pybullet_solver(c):
     """pybullet: `calculateInverseKinematics(2)`, compiled damped least squares."""
     import pybullet
 
-    client = pybullet.connect(pybullet.DIRECT)
+    if not pybullet.isConnected():
+        pybullet.connect(pybullet.DIRECT)
+    pybullet.resetSimulation()
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "body.urdf")
         file.write_text(urdf(c), encoding="utf-8")
         with _quiet():
-            body = pybullet.loadURDF(str(file), useFixedBase=True, physicsClientId=client)
+            body = pybullet.loadURDF(str(file), useFixedBase=True)
     names = [pybullet.getJointInfo(body, i)[1].decode() for i in range(pybullet.getNumJoints(body))]
     moving = [name for name in names if name in c.tree.names]
     order = np.array([moving.index(name) for name in c.tree.names])
