@@ -14,7 +14,9 @@ from ikteach.body import Effectors, Frames, Tree, locate
 def ccd(
     J: Array, e: Array, *, tree: Tree, effectors: Effectors, frames: Frames, low: Array, high: Array
 ) -> Array:
-    """Δθ (..., n) [rad] of one sweep over all joints; J (..., 3k, n) only says which are locked.
+    """Turn each joint once, from the tips to the ground: Δθ (..., n) [rad].
+
+    J (..., 3k, n) is not asked; it is there so that all methods are called alike.
 
     e                      (..., 3k)  t − s [m]
     tree, effectors, frames           the body, and where its joints are

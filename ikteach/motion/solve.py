@@ -1,6 +1,5 @@
 """One call to a pose: targets in, and the pose that meets them, or how near it came and why."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -10,9 +9,10 @@ from ikteach.arrays import Array, ArrayLike, Index, Mask
 from ikteach.body import Effectors, Frames, Tree, forward, jacobian, locate
 from ikteach.body.forward import pose
 from ikteach.checks import count, function, number, numbers, shown
+from ikteach.motion.checks import goals as checked_targets
+from ikteach.motion.checks import solver_of
 from ikteach.motion.here import Here, placed, wants
-from ikteach.motion.step import Bounds, Cap, LimitRule, hold, ignore, solver_of, whole
-from ikteach.motion.step import goals as checked_targets
+from ikteach.motion.rules import Bounds, Cap, LimitRule, hold, whole
 from ikteach.solvers import Solver, ask, dls_following
 
 POOL = 128  # poses that are worked on at once: their Jacobians stay in the processor's cache
@@ -53,16 +53,6 @@ class Solution(NamedTuple):
         """Why the search ended, in words: a string, or an array (...) of them for a batch."""
         words = np.array(REASONS)[self.why]
         return words if words.ndim else str(words)
-
-
-class Search(NamedTuple):
-    """What all poses of one call have in common. `advance(θ, frames, e, J)` gives (θ, held)."""
-
-    tree: Tree
-    effectors: Effectors
-    advance: Callable[[Array, Frames, Array, Array], tuple[Array, Mask]]
-    tolerance: float
-    most: int
 
 
 def solve(
@@ -113,10 +103,17 @@ def solve(
         targets = np.broadcast_to(targets, (*batch, k, 3))
     starts, goals = theta.reshape(-1, n), targets.reshape(-1, k, 3)
     starts = np.minimum(np.maximum(starts, tree.lower), tree.upper)
-    if weights is not None:
-        weights = _row_weights(effectors, weights)
-    advance = _advance(tree, effectors, solver_of(solver), limits, max_step, cap, weights)
-    search = Search(tree, effectors, advance, tolerance, most)
+    search = _Search(
+        tree,
+        effectors,
+        solver_of(solver),
+        tolerance,
+        most,
+        limits,
+        max_step,
+        cap,
+        None if weights is None else _row_weights(effectors, weights),
+    )
     found = _descend(search, starts, goals)
     rng: np.random.Generator | None = None
     for _ in range(restarts):
@@ -127,40 +124,47 @@ def solve(
         again = _descend(search, _elsewhere(tree, effectors, goals[left], rng), goals[left])
         found = _better(found, again, left)
     return Solution(
-        found.theta.reshape(*batch, n), found.error.reshape(*batch, k),
-        found.iterations.reshape(batch), found.why.reshape(batch),
-    )  # fmt: skip
+        found.theta.reshape(*batch, n),
+        found.error.reshape(*batch, k),
+        found.iterations.reshape(batch),
+        found.why.reshape(batch),
+    )
 
 
-def _advance(
-    tree: Tree, effectors: Effectors, solver: Solver, limits: LimitRule,
-    max_step: float | None, cap: Cap, weights: Array | None,
-) -> Callable[[Array, Frames, Array, Array], tuple[Array, Mask]]:  # fmt: skip
-    """One iteration as a function of θ, e and J; what does not change is looked up here."""
-    free = tree.mobility
-    bounds = Bounds(tree.lower, tree.upper)
+@dataclass(frozen=True)
+class _Search:
+    """What all poses of one call have in common."""
 
-    def advance(theta: Array, frames: Frames, e: Array, J: Array) -> tuple[Array, Mask]:
-        here = solver
+    tree: Tree
+    effectors: Effectors
+    solver: Solver
+    tolerance: float
+    most: int
+    limits: LimitRule
+    max_step: float | None
+    cap: Cap
+    weights: Array | None  # (3k,)
+
+    def advance(self, theta: Array, frames: Frames, e: Array, J: Array) -> tuple[Array, Mask]:
+        """Take one iteration from θ (p, n): the poses after it, and the joints a limit stopped."""
+        tree, solver, bounds = self.tree, self.solver, Bounds(self.tree, theta)
         if wants(solver):
-            low, high = (-np.inf, np.inf) if limits is ignore else bounds
-            here = placed(solver, Here(tree, effectors, frames, low - theta, high - theta))
-
-        if weights is not None:
-            J, e = J * weights[:, None], e * weights
+            here = Here.of(tree, self.effectors, frames, theta, self.limits, bounds)
+            solver = placed(solver, here)
+        if self.weights is not None:
+            J, e = J * self.weights[:, None], e * self.weights
         J.setflags(write=False)  # no solver may change them
         e.setflags(write=False)
 
         def wish(s: Array | None) -> Array:
-            """What the solver wants of joints with mobility s, None: all free."""
-            dtheta = ask(here, J, e) if s is None else s * ask(here, J * s[..., None, :], e)
-            return dtheta if max_step is None else cap(dtheta, max_step, effectors.chains)
+            """Ask how joints with mobility s would take e away; None: all are free."""
+            dtheta = ask(solver, J, e) if s is None else s * ask(solver, J * s[..., None, :], e)
+            if self.max_step is None:
+                return dtheta
+            return self.cap(dtheta, self.max_step, self.effectors.chains)
 
-        return limits(
-            bounds, theta, wish(None if tree.free else free), lambda held, _: wish(free * ~held)
-        )
-
-    return advance
+        wanted = wish(None if tree.free else tree.mobility)
+        return self.limits(bounds, theta, wanted, lambda held, _: wish(tree.mobility * ~held))
 
 
 @dataclass
@@ -231,12 +235,17 @@ def _row_weights(effectors: Effectors, weights: ArrayLike) -> Array:
     return each.repeat(3)
 
 
-def _descend(search: Search, starts: Array, goals: Array) -> Solution:
+def _descend(search: _Search, starts: Array, goals: Array) -> Solution:
     """Search from every start (b, n) for its goals (b, k, 3).
 
     At most POOL poses are worked on at once; who is done makes room for the next.
     """
-    tree, effectors, advance, tolerance, most = search
+    tree, effectors, tolerance, most = (
+        search.tree,
+        search.effectors,
+        search.tolerance,
+        search.most,
+    )
     b, k = goals.shape[:2]
     out = Solution(
         np.empty_like(starts), np.empty((b, k)), np.empty(b, np.intp), np.empty(b, np.intp)
@@ -264,7 +273,7 @@ def _descend(search: Search, starts: Array, goals: Array) -> Solution:
             frames, e, s = Frames(*(part[stay] for part in frames)), e[stay], s[stay]
         if len(pool.rows):
             J = jacobian(tree, frames, effectors, at=s)
-            pool.theta, pool.held = advance(pool.theta, frames, e.reshape(len(e), 3 * k), J)
+            pool.theta, pool.held = search.advance(pool.theta, frames, e.reshape(len(e), 3 * k), J)
             pool.count = pool.count + 1
         if len(waiting) and (room := POOL - len(pool.rows)):
             pool.join(_Pool.of(waiting[:room], starts, goals))

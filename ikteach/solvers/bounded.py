@@ -14,7 +14,7 @@ FULL = 3  # rounds without progress in which all wrong joints change sides; then
 def bounded(
     J: Array, e: Array, *, low: ArrayLike, high: ArrayLike, share: float = 0.5, least: float = 4e-4
 ) -> Array:
-    """Δθ, the least of ‖e − JΔθ‖² + λ²‖Δθ‖² with low ≤ Δθ ≤ high.
+    """Step Δθ, the least of ‖e − JΔθ‖² + λ²‖Δθ‖² with low ≤ Δθ ≤ high.
 
     J            (..., m, n)  Jacobian [m/rad]
     e            (..., m)     error [m]

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from strategies import anybody, poses
 
 from ikteach import Effectors, Joint, Tree, figures, forward, jacobian, locate
 from ikteach.motion.ccd import ccd
-from tests.strategies import anybody, poses
 
 
 def sweep(tree, effectors, theta, targets, low=None, high=None):
