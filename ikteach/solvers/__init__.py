@@ -2,6 +2,16 @@
 
     solver(J (..., m, n), e (..., m), *, its own options) -> dtheta (..., n)
 
+As optimisers of ½‖t − s(θ)‖² they have other names, under which a student meets them elsewhere:
+
+    transpose       steepest descent, with the step that is best for the linear model
+    pseudoinverse   Gauss–Newton, of all solutions the shortest, small σ cut off
+    dls             Levenberg–Marquardt with a λ that stays, Tikhonov regularisation
+    dls_following   Levenberg–Marquardt with a λ in proportion to the residual
+    sdls            Gauss–Newton in singular directions, a trust region for each
+    bounded         Levenberg–Marquardt in a box: a quadratic programme per step (active set)
+    ccd             coordinate descent, each joint exactly (in `ikteach.motion.ccd`)
+
 Options are bound with `functools.partial`. Weights, limits, caps and clamps are not in here: they
 are the same for all methods and stand in `ikteach.motion.step`.
 """

@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose
 
 from ikteach import figures, forward, locate, step
 from ikteach.motion import hold
+from ikteach.motion.reach.ways import WAYS
 
 
 def test_speed_compares_things_that_do_the_same():
@@ -45,7 +46,7 @@ def test_following_arrives_where_it_can():
 
 def test_reach_prints_its_tables(capsys):
     reach.main(cursors=6, ticks=60)
-    assert capsys.readouterr().out.count("\n") == 2 * (3 + len(reach.study.WAYS))
+    assert capsys.readouterr().out.count("\n") == 2 * (3 + len(WAYS))
 
 
 def test_no_promise_is_broken(capsys):
