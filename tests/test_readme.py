@@ -17,6 +17,14 @@ def test_the_example_prints_the_table() -> None:
     assert all(name in run.stdout for name in ("pseudoinverse", "foot.l", "hand.r"))
 
 
+def test_one_call_prints_how_near_and_why() -> None:
+    (example,) = re.findall(r'```shell\npython -c "\n(.*?)"\n```', README, re.DOTALL)
+    run = subprocess.run(
+        [sys.executable, "-c", example], capture_output=True, text=True, check=True
+    )
+    assert "at limits" in run.stdout
+
+
 def test_there_are_two_commands_and_ci_calls_the_test_command() -> None:
     commands = re.findall(r"```sh\n(.*?)```", README, re.DOTALL)
     assert len(commands) == 2
