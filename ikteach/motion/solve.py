@@ -191,7 +191,7 @@ class _Pool:
 
     @classmethod
     def of(cls, rows: Index, starts: Array, goals: Array) -> "_Pool":
-        """The pool of these rows, at their starts."""
+        """Begin with these rows at their starts."""
         theta, targets, p = starts[rows], goals[rows], len(rows)
         count, held, least = np.zeros(p, np.intp), np.zeros(theta.shape, bool), np.full(p, np.inf)
         squares = np.full(targets.shape[:-1], np.inf)
@@ -209,7 +209,7 @@ class _Pool:
             self.least = np.where(better, size, self.least)
 
     def stands_still(self) -> Mask:
-        """Whether the error has hardly fallen since this was asked the last time, (p,)."""
+        """Tell whose error has hardly fallen since this was asked last, (p,)."""
         still = self.least > (1 - WORTH) * self.mark
         self.mark = self.least
         return still
@@ -226,7 +226,7 @@ class _Pool:
 
 
 def _row_weights(effectors: Effectors, weights: ArrayLike) -> Array:
-    """The weight of each row of J, (3k,)."""
+    """Check weights, and repeat them for the rows of J, (3k,)."""
     each, k = numbers("weights", weights), len(effectors)
     if each.shape != (k,):
         raise ValueError(f"weights needs one number per effector, ({k},), not {each.shape}")
@@ -295,7 +295,7 @@ def _hand_in(out: Solution, pool: _Pool, done: Mask | slice, arrived: Mask, most
 
 
 def _elsewhere(tree: Tree, effectors: Effectors, goals: Array, rng: np.random.Generator) -> Array:
-    """A start for each of the goals (b, k, 3): of SWARM random poses the nearest, (b, n)."""
+    """Draw SWARM poses, and take for each of the goals (b, k, 3) the nearest, (b, n)."""
     half = np.where(tree.slide, 1.0, np.pi)
     lower = np.where(np.isfinite(tree.lower), tree.lower, np.minimum(tree.rest, tree.upper) - half)
     upper = np.where(np.isfinite(tree.upper), tree.upper, np.maximum(tree.rest, tree.lower) + half)
@@ -306,7 +306,7 @@ def _elsewhere(tree: Tree, effectors: Effectors, goals: Array, rng: np.random.Ge
 
 
 def _better(found: Solution, again: Solution, rows: Index) -> Solution:
-    """The better of both for these rows; iterations add up."""
+    """Keep the better of both for these rows; iterations add up."""
     won = again.converged | (again.error.max(axis=-1) < found.error[rows].max(axis=-1))
     at = rows[won]
     found.theta[at], found.error[at], found.why[at] = (

@@ -41,7 +41,7 @@ bounded.wants = ("low", "high")  # type: ignore[attr-defined]
 
 
 def _pivot(H: Array, g: Array, low: Array, high: Array) -> Array:
-    """The least of ½xᵀHx − gᵀx with low ≤ x ≤ high, (b, n), for H (b, n, n) positive definite."""
+    """Find the least of ½xᵀHx − gᵀx with low ≤ x ≤ high, (b, n); H (b, n, n) is positive."""
     b, n = g.shape
     at_low, at_high = np.zeros((2, b, n), dtype=bool)
     stuck = low == high
@@ -68,7 +68,7 @@ def _pivot(H: Array, g: Array, low: Array, high: Array) -> Array:
 
 
 def _with_ends(H: Array, g: Array, ends: Array, fixed: Mask) -> Array:
-    """The x (b, n) with x = ends where fixed, that solves the rows of H x = g that are not."""
+    """Solve the rows of H x = g that are not fixed; x (b, n) is at `ends` where they are."""
     free = ~fixed
     put = np.where(fixed, ends, 0)
     both = free[:, :, None] & free[:, None, :]
