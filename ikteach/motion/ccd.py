@@ -14,7 +14,7 @@ from ikteach.body import Effectors, Frames, Tree, locate
 def ccd(
     J: Array, e: Array, *, tree: Tree, effectors: Effectors, frames: Frames, low: Array, high: Array
 ) -> Array:
-    """Turn each joint once, from the tips to the ground: Δθ (..., n) [rad].
+    """Turn each joint once, from tips to ground: (..., n) [rad].
 
     J (..., 3k, n) is not asked; it is there so that all methods are called alike.
 

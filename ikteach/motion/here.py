@@ -50,7 +50,7 @@ class Here(NamedTuple):
 
 
 def wants(solver: Any) -> tuple[str, ...]:
-    """Say which fields of `Here` a solver takes, also one with its options bound."""
+    """Say which fields of `Here` a solver takes."""
     while isinstance(solver, partial):
         solver = solver.func
     return getattr(solver, "wants", ())

@@ -92,7 +92,7 @@ class PerPose:
         return tuple({name for solver in self.solvers for name in wants(solver)})
 
     def placed(self, here: Here) -> "PerPose":
-        """Give each of its methods what it wants at its own pose."""
+        """Give each method what it wants at its pose."""
         return PerPose(placed(solver, here.at(i)) for i, solver in enumerate(self.solvers))
 
     def __call__(self, J: Array, e: Array) -> Array:

@@ -8,7 +8,7 @@ import numpy as np
 from ikteach.arrays import Array, ArrayLike, Index, Mask
 from ikteach.body import Effectors, Frames, Tree, forward, jacobian, locate
 from ikteach.body.forward import pose
-from ikteach.checks import count, function, number, numbers, shown
+from ikteach.checks import common_batch, count, function, number, numbers, shown
 from ikteach.motion.checks import goals as checked_targets
 from ikteach.motion.checks import solver_of
 from ikteach.motion.here import Here, placed, wants
@@ -16,7 +16,7 @@ from ikteach.motion.rules import Bounds, Cap, LimitRule, hold, whole
 from ikteach.solvers import Solver, ask, dls_following
 
 POOL = 128  # poses that are worked on at once: their Jacobians stay in the processor's cache
-SWARM = 24  # poses drawn for each restart; the one nearest to the targets begins
+DRAWN = 24  # poses drawn for each restart; the one nearest to the targets begins
 WORTH = 1e-3  # share by which the error must fall to count as progress …
 PATIENCE = 12  # … at least once in so many iterations
 
@@ -50,7 +50,7 @@ class Solution(NamedTuple):
 
     @property
     def reason(self) -> "str | np.ndarray[tuple[int, ...], np.dtype[np.str_]]":
-        """Why the search ended, in words: a string, or an array (...) of them for a batch."""
+        """Why the search ended, in words; an array (...) for a batch."""
         words = np.array(REASONS)[self.why]
         return words if words.ndim else str(words)
 
@@ -87,33 +87,14 @@ def solve(
     ValueError if a shape is wrong or a number not finite; FloatingPointError if the solver's answer
     is not finite. Source: the loop of thesis 5.1 without its clock.
     """
-    theta = pose(tree, tree.rest if theta is None else theta)
-    targets = checked_targets(effectors, targets)
     tolerance, most = number("tolerance", tolerance), count("most", most, least=0)
     restarts, seed = count("restarts", restarts, least=0), count("seed", seed, least=0)
-    if max_step is not None:
-        max_step = number("max_step", max_step)
-    function("limits", limits)
-    function("cap", cap)
-    n, k = len(tree), len(effectors)
-    batch = theta.shape[:-1]
-    if batch != targets.shape[:-2]:
-        batch = np.broadcast_shapes(batch, targets.shape[:-2])
-        theta = np.broadcast_to(theta, (*batch, n))
-        targets = np.broadcast_to(targets, (*batch, k, 3))
-    starts, goals = theta.reshape(-1, n), targets.reshape(-1, k, 3)
-    starts = np.minimum(np.maximum(starts, tree.lower), tree.upper)
-    search = _Search(
-        tree,
-        effectors,
-        solver_of(solver),
-        tolerance,
-        most,
-        limits,
-        max_step,
-        cap,
-        None if weights is None else _row_weights(effectors, weights),
-    )
+    max_step = None if max_step is None else number("max_step", max_step)
+    limits, cap = function("limits", limits), function("cap", cap)
+    rows = None if weights is None else _row_weights(effectors, weights)
+    method = solver_of(solver)
+    search = _Search(tree, effectors, method, tolerance, most, limits, max_step, cap, rows)
+    starts, goals, batch = _flat(tree, tree.rest if theta is None else theta, effectors, targets)
     found = _descend(search, starts, goals)
     rng: np.random.Generator | None = None
     for _ in range(restarts):
@@ -124,11 +105,24 @@ def solve(
         again = _descend(search, _elsewhere(tree, effectors, goals[left], rng), goals[left])
         found = _better(found, again, left)
     return Solution(
-        found.theta.reshape(*batch, n),
-        found.error.reshape(*batch, k),
+        found.theta.reshape(*batch, len(tree)),
+        found.error.reshape(*batch, len(effectors)),
         found.iterations.reshape(batch),
         found.why.reshape(batch),
     )
+
+
+def _flat(
+    tree: Tree, theta: ArrayLike, effectors: Effectors, targets: ArrayLike
+) -> tuple[Array, Array, tuple[int, ...]]:
+    """Check θ and targets, and lay the batch out in one row: (b, n), (b, k, 3), its shape."""
+    theta, targets = pose(tree, theta), checked_targets(effectors, targets)
+    batch = common_batch("theta and targets", theta.shape[:-1], targets.shape[:-2])
+    if theta.shape[:-1] != batch or targets.shape[:-2] != batch:
+        theta = np.broadcast_to(theta, (*batch, len(tree)))
+        targets = np.broadcast_to(targets, (*batch, len(effectors), 3))
+    starts = np.minimum(np.maximum(theta, tree.lower), tree.upper)
+    return starts.reshape(-1, len(tree)), targets.reshape(-1, len(effectors), 3), batch
 
 
 @dataclass(frozen=True)
@@ -295,13 +289,13 @@ def _hand_in(out: Solution, pool: _Pool, done: Mask | slice, arrived: Mask, most
 
 
 def _elsewhere(tree: Tree, effectors: Effectors, goals: Array, rng: np.random.Generator) -> Array:
-    """Draw SWARM poses, and take for each of the goals (b, k, 3) the nearest, (b, n)."""
+    """Draw DRAWN poses, and take for each of the goals (b, k, 3) the nearest, (b, n)."""
     half = np.where(tree.slide, 1.0, np.pi)
     lower = np.where(np.isfinite(tree.lower), tree.lower, np.minimum(tree.rest, tree.upper) - half)
     upper = np.where(np.isfinite(tree.upper), tree.upper, np.maximum(tree.rest, tree.lower) + half)
-    swarm = rng.uniform(lower, upper, size=(SWARM, len(tree)))
+    swarm = rng.uniform(lower, upper, size=(DRAWN, len(tree)))
     s = locate(forward(tree, swarm), effectors)
-    away = np.square(goals[:, None] - s).sum(axis=(-1, -2))  # (b, SWARM)
+    away = np.square(goals[:, None] - s).sum(axis=(-1, -2))  # (b, DRAWN)
     return swarm[away.argmin(axis=-1)]
 
 

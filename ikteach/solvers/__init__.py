@@ -9,7 +9,7 @@ As optimisers of ½‖t − s(θ)‖² they have other names, under which a stud
     dls             Levenberg–Marquardt with a λ that stays, Tikhonov regularisation
     dls_following   Levenberg–Marquardt with a λ in proportion to the residual
     sdls            Gauss–Newton in singular directions, a trust region for each
-    bounded         Levenberg–Marquardt in a box: a quadratic programme per step (active set)
+    bvls            Levenberg–Marquardt in a box: a quadratic programme per step (active set)
     ccd             coordinate descent, each joint exactly (in `ikteach.motion.ccd`)
 
 Options are bound with `functools.partial`. Weights, limits, caps and clamps are not in here: they

@@ -14,10 +14,10 @@ from ikteach import SOLVERS, Effectors, Joint, Tree, dls_following, figures, for
 from ikteach.motion import clip, ignore
 from ikteach.motion.ccd import ccd
 from ikteach.motion.solve import POOL
-from ikteach.solvers.bounded import bounded
+from ikteach.solvers.bvls import bvls
 
 HUMAN = figures.human()
-EVERY = [*SOLVERS.values(), dls_following, bounded, ccd]
+EVERY = [*SOLVERS.values(), dls_following, bvls, ccd]
 
 
 def problems(figure, count, near, seed=0):
@@ -55,7 +55,7 @@ def test_what_it_says_is_so(solver, figure, seed):
     assert (found.iterations <= 20).all()
 
 
-@pytest.mark.parametrize("solver", ["dls", "sdls", dls_following, ccd, bounded])
+@pytest.mark.parametrize("solver", ["dls", "sdls", dls_following, ccd, bvls])
 def test_a_batch_is_its_members_to_the_last_bit(solver):
     starts, targets = problems(HUMAN, POOL + 30, 0.5)
     options = {"tolerance": 1.8e-3, "most": 15}

@@ -11,10 +11,12 @@ from ikteach.arrays import Array, ArrayLike, Mask
 FULL = 3  # rounds without progress in which all wrong joints change sides; then one at a time
 
 
-def bounded(
+def bvls(
     J: Array, e: Array, *, low: ArrayLike, high: ArrayLike, share: float = 0.5, least: float = 4e-4
 ) -> Array:
-    """Step Δθ, the least of ‖e − JΔθ‖² + λ²‖Δθ‖² with low ≤ Δθ ≤ high.
+    """Step within a box: damped least squares of bounded variables.
+
+    Δθ is the least of ‖e − JΔθ‖² + λ²‖Δθ‖² with low ≤ Δθ ≤ high.
 
     J            (..., m, n)  Jacobian [m/rad]
     e            (..., m)     error [m]
@@ -37,7 +39,7 @@ def bounded(
     return _pivot(H, g, low, high).reshape(*batch, n)
 
 
-bounded.wants = ("low", "high")  # type: ignore[attr-defined]
+bvls.wants = ("low", "high")  # type: ignore[attr-defined]
 
 
 def _pivot(H: Array, g: Array, low: Array, high: Array) -> Array:

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.optimize import lsq_linear
 
 from ikteach.solvers import dls_following
-from ikteach.solvers.bounded import bounded
+from ikteach.solvers.bvls import bvls
 
 
 def problem(seed, batch=()):
@@ -24,7 +24,7 @@ def problem(seed, batch=()):
 @given(st.integers(0, 10_000))
 def test_it_is_the_least_squares_within_the_ends(seed):
     J, e, low, high = problem(seed)
-    found = bounded(J, e, low=low, high=high)
+    found = bvls(J, e, low=low, high=high)
     n = J.shape[1]
     damping = np.sqrt(0.25 * e @ e + 4e-4**2 * np.square(J).sum())
     wider = np.where(low == high, 1e-9, high)  # scipy wants room
@@ -37,13 +37,13 @@ def test_it_is_the_least_squares_within_the_ends(seed):
 
 def test_without_ends_it_is_dls_that_follows():
     J, e, *_ = problem(3)
-    free = bounded(J, e, low=np.full(J.shape[1], -np.inf), high=np.full(J.shape[1], np.inf))
+    free = bvls(J, e, low=np.full(J.shape[1], -np.inf), high=np.full(J.shape[1], np.inf))
     assert free == pytest.approx(dls_following(J, e, least=4e-4), rel=1e-3)
 
 
 def test_a_batch_is_its_members():
     J, e, low, high = problem(5, batch=(4, 3))
-    every = bounded(J, e, low=low, high=high)
+    every = bvls(J, e, low=low, high=high)
     for i in np.ndindex(4, 3):
-        one = bounded(J[i], e[i], low=low[i], high=high[i])
+        one = bvls(J[i], e[i], low=low[i], high=high[i])
         assert every[i] == pytest.approx(one, abs=1e-12)
