@@ -38,7 +38,7 @@ class Here(NamedTuple):
         limits: LimitRule,
         bounds: Bounds,
     ) -> "Here":
-        """Look around from pose θ; where limits are ignored, joints may turn any way."""
+        """Look around from θ; without limits joints turn any way."""
         low, high = (-np.inf, np.inf) if limits is ignore else (bounds.lower, bounds.upper)
         return cls(tree, effectors, frames, low - theta, high - theta)
 
@@ -56,8 +56,8 @@ def wants(solver: Any) -> tuple[str, ...]:
     return getattr(solver, "wants", ())
 
 
-def placed(solver: Any, here: Here) -> Solver:
-    """Bind what a solver wants, so that it is a function of J and e."""
-    if hasattr(solver, "placed"):  # it is made of others
-        return solver.placed(here)
+def situated(solver: Any, here: Here) -> Solver:
+    """Bind what a solver wants: a function of J and e."""
+    if hasattr(solver, "situated"):  # it is made of others
+        return solver.situated(here)
     return partial(solver, **{name: getattr(here, name) for name in wants(solver)})

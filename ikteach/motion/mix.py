@@ -9,7 +9,7 @@ from ikteach.arrays import Array, frozen
 from ikteach.body import Effectors
 from ikteach.checks import shown
 from ikteach.motion.checks import solver_of
-from ikteach.motion.here import Here, placed, wants
+from ikteach.motion.here import Here, situated, wants
 from ikteach.names import unknown
 from ikteach.solvers import Solver, ask, name_of
 
@@ -60,9 +60,9 @@ class Mix:
         """The fields of `Here` that its methods take."""
         return tuple({name for solver in self.solvers for name in wants(solver)})
 
-    def placed(self, here: Here) -> "Mix":
+    def situated(self, here: Here) -> "Mix":
         """Give each of its methods what it wants."""
-        return replace(self, solvers=tuple(placed(solver, here) for solver in self.solvers))
+        return replace(self, solvers=tuple(situated(solver, here) for solver in self.solvers))
 
     def __call__(self, J: Array, e: Array) -> Array:
         """Δθ (..., n) for J (..., 3k, n) and e (..., 3k); the errors are those of `ask`."""
@@ -91,9 +91,9 @@ class PerPose:
         """The fields of `Here` that its methods take."""
         return tuple({name for solver in self.solvers for name in wants(solver)})
 
-    def placed(self, here: Here) -> "PerPose":
+    def situated(self, here: Here) -> "PerPose":
         """Give each method what it wants at its pose."""
-        return PerPose(placed(solver, here.at(i)) for i, solver in enumerate(self.solvers))
+        return PerPose(situated(solver, here.at(i)) for i, solver in enumerate(self.solvers))
 
     def __call__(self, J: Array, e: Array) -> Array:
         """Δθ (p, n); the errors are those of `ask`, and name the method."""

@@ -11,7 +11,7 @@ from ikteach.body.forward import pose
 from ikteach.checks import common_batch, count, function, number, numbers, shown
 from ikteach.motion.checks import goals as checked_targets
 from ikteach.motion.checks import solver_of
-from ikteach.motion.here import Here, placed, wants
+from ikteach.motion.here import Here, situated, wants
 from ikteach.motion.rules import Bounds, Cap, LimitRule, hold, whole
 from ikteach.solvers import Solver, ask, dls_following
 
@@ -140,11 +140,11 @@ class _Search:
     weights: Array | None  # (3k,)
 
     def advance(self, theta: Array, frames: Frames, e: Array, J: Array) -> tuple[Array, Mask]:
-        """Take one iteration from θ (p, n): the poses after it, and the joints a limit stopped."""
+        """Take one iteration from θ (p, n); tell also which joints a limit stopped."""
         tree, solver, bounds = self.tree, self.solver, Bounds(self.tree, theta)
         if wants(solver):
             here = Here.of(tree, self.effectors, frames, theta, self.limits, bounds)
-            solver = placed(solver, here)
+            solver = situated(solver, here)
         if self.weights is not None:
             J, e = J * self.weights[:, None], e * self.weights
         J.setflags(write=False)  # no solver may change them
@@ -192,7 +192,7 @@ class _Pool:
         return cls(rows, theta, targets, count, held, theta, squares, least, least)
 
     def remember(self, squares: Array) -> None:
-        """Keep the pose where it is better than all before it."""
+        """Keep the pose where it is the best so far."""
         size = np.add.reduce(squares, axis=-1)
         better = size < self.least
         if np.count_nonzero(better) == len(better):
@@ -203,7 +203,7 @@ class _Pool:
             self.least = np.where(better, size, self.least)
 
     def stands_still(self) -> Mask:
-        """Tell whose error has hardly fallen since this was asked last, (p,)."""
+        """Tell whose error hardly falls any more, (p,)."""
         still = self.least > (1 - WORTH) * self.mark
         self.mark = self.least
         return still

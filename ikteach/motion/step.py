@@ -20,7 +20,7 @@ from ikteach.motion.checks import (
     mobility_of,
     solver_of,
 )
-from ikteach.motion.here import Here, placed, wants
+from ikteach.motion.here import Here, situated, wants
 from ikteach.motion.rules import Bounds, Cap, LimitRule, clamp_error, hold, whole
 from ikteach.solvers import Solver, ask
 
@@ -111,7 +111,7 @@ def step(
     question = _Question(solver, theta, J, aim, free, all_free, max_step, cap, effectors.chains)
     bounds = Bounds(tree, theta, question.turn())
     if wants(solver):
-        question.solver = placed(solver, Here.of(tree, effectors, frames, theta, limits, bounds))
+        question.solver = situated(solver, Here.of(tree, effectors, frames, theta, limits, bounds))
     wanted = question.answer(free, aim)
     if wanted.ndim <= len(batch):  # there is a cap for each of a batch
         wanted = np.broadcast_to(wanted, (*batch, len(tree)))

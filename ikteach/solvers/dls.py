@@ -5,7 +5,7 @@ import numpy as np
 from ikteach.arrays import Array, ArrayLike
 from ikteach.checks import number, numbers
 from ikteach.solvers.door import per_pose, solver, unchecked
-from ikteach.solvers.stacked import gram, norm, plus_diagonal, solve, vecmat
+from ikteach.solvers.stacked import gram, inverse_times, norm, plus_diagonal, vecmat
 
 
 @solver(damping=per_pose)
@@ -21,7 +21,7 @@ def dls(J: Array, e: Array, *, damping: float | Array = 0.1) -> Array:
     Source: thesis 4.4.3; Buss 2004, eq. 11.
     """
     A = plus_diagonal(gram(J), damping * damping)  # JJᵀ + λ²I
-    return vecmat(solve(A, e), J)
+    return vecmat(inverse_times(A, e), J)
 
 
 @solver(share=number, least=number)

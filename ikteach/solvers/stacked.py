@@ -30,7 +30,7 @@ def matvec(A: Array, v: Array) -> Array:
     return A.dot(v) if v.ndim == 1 and A.ndim == 2 else np.matvec(A, v)
 
 
-def solve(A: Array, b: Array) -> Any:
+def inverse_times(A: Array, b: Array) -> Any:
     """Solve Ax = b for A (..., m, m), b (..., m): (..., m)."""
     return np.linalg.solve(A, b) if b.ndim == 1 else np.linalg.solve(A, b[..., None])[..., 0]
 
