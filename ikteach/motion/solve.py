@@ -151,7 +151,7 @@ class _Search:
         e.setflags(write=False)
 
         def wish(s: Array | None) -> Array:
-            """Ask how joints with mobility s would take e away; None: all are free."""
+            """Ask how joints of mobility s would take e away."""
             dtheta = ask(solver, J, e) if s is None else s * ask(solver, J * s[..., None, :], e)
             if self.max_step is None:
                 return dtheta
