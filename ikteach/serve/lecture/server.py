@@ -50,6 +50,7 @@ CONNECTIONS = 64  # of one visitor, websockets not counted
 MESSAGES, BYTES, SAVED = 500, 2**20, 4  # per second that a socket may send; seconds saved up
 UNREAD = 2**24  # bytes that wait for a page before it is given up
 BUFFERED = 100  # messages of a kernel that wait for a page that has lost its socket
+OUTPUT = 60  # [s] that a figure may take to come; where many pages open at once, it takes long
 SLOW = 30  # [s] within which a request must have come
 FORM = 2**16  # bytes, the largest body of a request
 NEEDED = [  # of all that is installed for JupyterLab
@@ -273,6 +274,7 @@ SETTINGS = {
         "kernel_spec_manager_class": BoundedKernels,
         "multi_kernel_manager_class": Kernels,
     },
+    "VoilaExecutor": {"iopub_timeout": OUTPUT},
     "MappingKernelManager": {"cull_interval": ASK_EVERY, "cull_idle_timeout": ALONE},
     # Else who has the token may have a password written into a file of Jupyter's settings.
     "PasswordIdentityProvider": {"allow_password_change": False},
