@@ -155,8 +155,9 @@ def iterations(
     targets (..., k, 3) are reached `within` some metres. Infinite where `most` steps are not
     enough, or bring it no nearer. `options` go to `solve`.
     """
+    near = number("within", within)
     found = solve(
-        tree, effectors, targets, solver, theta=theta, tolerance=within, most=most, **options
+        tree, effectors, targets, solver, theta=theta, tolerance=near, most=most, **options
     )
     return np.where(found.converged, found.iterations, np.inf)
 
