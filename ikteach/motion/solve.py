@@ -7,6 +7,7 @@ import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Index, Mask
 from ikteach.body import Effectors, Frames, Tree, forward, jacobian, locate
+from ikteach.body.extent import extent
 from ikteach.body.forward import pose
 from ikteach.checks import common_batch, count, function, number, numbers, shown
 from ikteach.motion.checks import goals as checked_targets
@@ -290,7 +291,7 @@ def _hand_in(out: Solution, pool: _Pool, done: Mask | slice, arrived: Mask, most
 
 def _elsewhere(tree: Tree, effectors: Effectors, goals: Array, rng: np.random.Generator) -> Array:
     """Draw DRAWN poses, and take for each of the goals (b, k, 3) the nearest, (b, n)."""
-    half = np.where(tree.slide, 1.0, np.pi)
+    half = np.where(tree.slide, extent(tree, effectors).radius, np.pi)
     lower = np.where(np.isfinite(tree.lower), tree.lower, np.minimum(tree.rest, tree.upper) - half)
     upper = np.where(np.isfinite(tree.upper), tree.upper, np.maximum(tree.rest, tree.lower) + half)
     swarm = rng.uniform(lower, upper, size=(DRAWN, len(tree)))

@@ -13,7 +13,7 @@ from strategies import SEEDS, anybody, poses
 from ikteach import SOLVERS, Effectors, Joint, Tree, dls_following, figures, forward, locate, solve
 from ikteach.motion import clip, ignore
 from ikteach.motion.ccd import ccd
-from ikteach.motion.solve import POOL
+from ikteach.motion.solve import POOL, _elsewhere
 from ikteach.solvers.bvls import bvls
 
 HUMAN = figures.human()
@@ -172,3 +172,11 @@ def test_bad_input_is_named(options, error, words):
     arguments = {"targets": np.ones((4, 3))} | options
     with pytest.raises(error, match=words):
         solve(*HUMAN, **arguments)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+def test_restarts_draw_slides_as_far_as_the_body_is_large(unit):
+    slide = Tree.of([Joint("s", axis=(1, 0, 0), slide=True), Joint("a", "s", (unit, 0, 0))])
+    end = Effectors.of(slide, {"end": ("a", (unit, 0, 0))})
+    drawn = _elsewhere(slide, end, np.zeros((40, 1, 3)), np.random.default_rng(0))
+    assert 0.1 * unit < abs(drawn[:, 0]).max() <= 8 * unit
