@@ -23,6 +23,7 @@ PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 COMPUTING = [
     *(f"tests/{room}" for room in ("bench", "body", "motion", "solvers", "study")),
 ]
+BROWSERS = ["tests/browser", "tests/engines"]
 KERNELS, RARER_KERNELS = ["Haswell", "Sandybridge"], ["SkylakeX", "Zen"]
 ROUNDED = ["tests/body", "tests/motion", "tests/solvers", "tests/course/test_prose.py"]
 STYLE = "tests/test_types.py"  # with the newest numpy, pandas, mypy and ruff alone
@@ -147,14 +148,19 @@ def path_to_pythons() -> str:
 
 def lanes(folder: Path, full: bool) -> list[list[list[Part]]]:
     """The lanes, those of one list side by side, one list after the other."""
-    apart = [f"--ignore={one}" for one in ["tests/browser", *COMPUTING, STYLE]]
-    no_browser = ["tests", "--ignore=tests/browser", f"--ignore={STYLE}"]
+    apart = [f"--ignore={one}" for one in [*BROWSERS, *COMPUTING, STYLE]]
+    no_browser = ["tests", *(f"--ignore={one}" for one in [*BROWSERS, STYLE])]
     servers = Part(
         "servers, notebooks, widgets",
         [pytest("--numprocesses", "2", "--dist", "loadfile", *apart, nice=False)],
     )
     page = Part("JavaScript", [[*NPM, "test"]], needs=[[*NPM, "ci", "--no-audit", "--no-fund"]])
-    browser = Part("browser", [pytest("tests/browser", nice=False)])
+    browsers = [Part("browser", [pytest("tests/browser", nice=False)])]
+    engines = Part(
+        "Firefox and WebKit",
+        [pytest("tests/engines", nice=False)],
+        needs=[["sh", "tests/engines/install", sys.executable]],
+    )
     beside = [
         Part("computing", [pytest(*COMPUTING, STYLE)]),
         page,
@@ -162,9 +168,10 @@ def lanes(folder: Path, full: bool) -> list[list[list[Part]]]:
         packages(folder, "lowest-direct", no_browser if full else [*COMPUTING, "tests/view"]),
     ]
     if full:
+        browsers.append(engines)
         beside += [kernel(name, *TALKING) for name in RARER_KERNELS]
         beside += [packages(folder, "highest", no_browser, python) for python in PYTHONS]
-    return [[[servers]], [[browser], beside]]
+    return [[[servers]], [browsers, beside]]
 
 
 def main() -> int:
