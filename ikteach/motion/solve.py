@@ -192,6 +192,7 @@ class _Pool:
     best    (p, n)     the best pose so far, with its squared distances (p, k) and their sum (p,)
     before  (p,)       that sum one iteration ago
     mark    (p,)       that sum when it was last asked whether it still falls
+    due     (p,)       the count at which that is asked next
     """
 
     rows: Index
@@ -203,19 +204,21 @@ class _Pool:
     least: Array
     before: Array
     mark: Array
+    due: Index
 
     @classmethod
-    def of(cls, starts: Array, goals: Array, first: int, last: int) -> "_Pool":
+    def of(cls, starts: Array, goals: Array, first: int, last: int, most: int) -> "_Pool":
         """Begin with rows first to last − 1, at their starts."""
         rows, theta, goals = np.arange(first, last), starts[first:last], goals[first:last]
         never = np.full(len(rows), np.inf)
         count, squares = np.zeros(len(rows), np.intp), np.empty(goals.shape[:-1])
-        return cls(rows, theta, goals, count, theta, squares, never, never, never)
+        due = count + min(PATIENCE - 1, most)
+        return cls(rows, theta, goals, count, theta, squares, never, never, never, due)
 
-    def remember(self, squares: Array, arrived: Mask) -> None:
-        """Keep poses that arrived, or are the best yet."""
+    def remember(self, squares: Array) -> None:
+        """Keep poses that are the best yet."""
         size = np.add.reduce(squares, axis=-1)
-        better = arrived | (size < self.least)
+        better = size < self.least
         self.before = self.least
         if np.count_nonzero(better) == len(better):
             self.best, self.squares, self.least = self.theta, squares, size
@@ -224,13 +227,15 @@ class _Pool:
             self.squares = np.where(better[:, None], squares, self.squares)
             self.least = np.where(better, size, self.least)
 
-    def stands_still(self) -> Mask:
-        """Tell whose error has hardly fallen in its last PATIENCE iterations, (p,)."""
-        due = self.count % PATIENCE == PATIENCE - 1
-        if np.count_nonzero(due):
-            due, asked = due & (self.least > (1 - WORTH) * self.mark), due
-            self.mark = np.where(asked, self.least, self.mark)
-        return due
+    def out_of_patience(self, most: int) -> Mask:
+        """Tell who took `most` iterations, or hardly improves, (p,)."""
+        due = self.count >= self.due
+        if not np.count_nonzero(due):
+            return due
+        still = due & (self.least > (1 - WORTH) * self.mark)
+        self.mark = np.where(due, self.least, self.mark)
+        self.due = np.where(due, np.minimum(self.due + PATIENCE, most), self.due)
+        return still | (self.count >= most)
 
     def keep(self, those: Mask) -> None:
         """Let the others go."""
@@ -258,21 +263,24 @@ def _descend(search: _Search, starts: Array, goals: Array) -> Solution:
 
     At most POOL poses are worked on at once; who is done makes room for the next.
     """
-    tree, effectors, enough = search.tree, search.effectors, search.tolerance**2
+    tree, effectors, most = search.tree, search.effectors, search.most
     b, k = goals.shape[:2]
     out = Solution(np.empty_like(starts), np.empty((b, k)), *np.empty((2, b), np.intp))
     begun = min(b, POOL)
-    pool = _Pool.of(starts, goals, 0, begun)
+    pool = _Pool.of(starts, goals, 0, begun, most)
     while p := len(pool.rows):
         frames = forward(tree, pool.theta)
         s = locate(frames, effectors)
         e = pool.goals - s
         squares = np.vecdot(e, e)
-        arrived = np.maximum.reduce(squares, axis=-1) <= enough
-        pool.remember(squares, arrived)
-        done = arrived | (pool.count >= search.most) | pool.stands_still()
-        if finished := np.count_nonzero(done):
-            _hand_in(search, out, pool, done, arrived)
+        done = arrived = np.maximum.reduce(squares, axis=-1) <= search.tolerance**2
+        if (finished := np.count_nonzero(arrived)) < p:
+            pool.remember(squares)
+            done = arrived | pool.out_of_patience(most)
+            finished = np.count_nonzero(done)
+        if finished:
+            those = done if finished < p else slice(None)
+            _hand_in(search, out, pool, those, arrived[those], squares[those])
             if finished == p and begun == b:
                 break
             stay = ~done
@@ -284,23 +292,32 @@ def _descend(search: _Search, starts: Array, goals: Array) -> Solution:
             pool.count = pool.count + 1
         if finished and begun < b:
             last = min(b, begun + finished)
-            pool.join(_Pool.of(starts, goals, begun, last))
+            pool.join(_Pool.of(starts, goals, begun, last, most))
             begun = last
     return out
 
 
-def _hand_in(search: _Search, out: Solution, pool: _Pool, done: Mask, arrived: Mask) -> None:
-    """Write down what was found by those that are done, and why they ended."""
-    rows = pool.rows[done]
-    out.theta[rows] = pool.best[done]
-    out.error[rows] = np.sqrt(pool.squares[done])
+def _hand_in(
+    search: _Search, out: Solution, pool: _Pool, done: Mask | slice, arrived: Mask, squares: Array
+) -> None:
+    """Write down what was found by those that are done, and why they ended.
+
+    Of those, arrived (p,) are where they wanted to be, and squares (p, k) their squared distances.
+    """
+    rows, theta = pool.rows[done], pool.theta[done]
+    why: Index | int = ARRIVED
+    if np.count_nonzero(arrived) < len(arrived):
+        best, least = pool.best[done], pool.least[done]
+        falling = (pool.count[done] > 0) & (least < (1 - WORTH) * pool.before[done])
+        failed = np.where(falling, IMPATIENT, _why_not(search, best, pool.goals[done]))
+        why = np.where(arrived, ARRIVED, failed)
+        there = arrived[:, None]
+        theta = np.where(there, theta, best)
+        squares = np.where(there, squares, pool.squares[done])
+    out.theta[rows] = theta
+    out.error[rows] = np.sqrt(squares)
     out.iterations[rows] = pool.count[done]
-    out.why[rows] = ARRIVED
-    failed = done & ~arrived
-    if np.count_nonzero(failed):
-        falling = (pool.count > 0) & (pool.least < (1 - WORTH) * pool.before)
-        why = _why_not(search, pool.best[failed], pool.goals[failed])
-        out.why[pool.rows[failed]] = np.where(falling[failed], IMPATIENT, why)
+    out.why[rows] = why
 
 
 def _why_not(search: _Search, theta: Array, goals: Array) -> Index:
