@@ -1,6 +1,7 @@
 """A figure in motion: one step, many steps, and targets as functions of time."""
 
 from ikteach.motion import gait
+from ikteach.motion.ccd import ccd
 from ikteach.motion.gait import Gait
 from ikteach.motion.live.session import Session
 from ikteach.motion.reachable import reachable
@@ -14,6 +15,7 @@ __all__ = [
     "Session",
     "Step",
     "Track",
+    "ccd",
     "clip",
     "gait",
     "growing_clamp",

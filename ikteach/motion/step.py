@@ -111,7 +111,8 @@ def step(
     question = _Question(solver, theta, J, aim, free, all_free, max_step, cap, effectors.chains)
     bounds = Bounds(tree, theta, question.turn())
     if wants(solver):
-        question.solver = situated(solver, Here.of(tree, effectors, frames, theta, limits, bounds))
+        here = Here.of(tree, effectors, frames, theta, limits, bounds, free)
+        question.solver = situated(solver, here)
     wanted = question.answer(free, aim)
     if wanted.ndim <= len(batch):  # there is a cap for each of a batch
         wanted = np.broadcast_to(wanted, (*batch, len(tree)))
