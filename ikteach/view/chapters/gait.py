@@ -51,6 +51,8 @@ class GaitPlayer(Live):
         self._first = session.gait
         self.panel = self._make_panel()
         self.controls = self.panel.controls
+        self.choosing = self.controls["method"]
+        self.watch(scene)
         self.children = [
             widgets.HBox([self.scene.widget, self.panel.widget]),
             self.status,

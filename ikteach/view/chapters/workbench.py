@@ -57,6 +57,8 @@ class Workbench(Live):
         self.view = ViewPanel(self, self.guarded, self._turned, self._set_figures)
         self.object = ObjectPanel(self, self.guarded, self.view.straighten)
         self.panels = {panel.title: panel for panel in self._make_panels()}
+        self.choosing = self.panels["Method"].controls["method"]
+        self.watch(self.scene)
         self.bar = self._make_bar()
         self._drawer = widgets.Accordion(
             [

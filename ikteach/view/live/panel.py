@@ -217,6 +217,12 @@ def play_button() -> Any:
     return made
 
 
+def press(control: Any, value: Any) -> None:
+    """Set a control as a person does, who cannot press what is disabled."""
+    if not control.disabled:
+        control.value = value
+
+
 def _look(
     label: str, width: str = "560px", label_width: str = "190px", **traits: Any
 ) -> dict[str, Any]:
