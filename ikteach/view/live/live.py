@@ -72,9 +72,12 @@ class Live(Cell):
         }
 
     def slow_down(self) -> None:
-        """Let time pass half as fast, then a quarter, then as before."""
-        self._slow = (self._slow + 1) % len(PACES)
-        self.scene.driver.pace = PACES[self._slow]
+        """Let time pass at the next of `PACES`."""
+        self.set_pace((self._slow + 1) % len(PACES))
+
+    def set_pace(self, slow: int) -> None:
+        """Let time pass at one of `PACES`."""
+        self._slow, self.scene.driver.pace = slow, PACES[slow]
 
     def draw(self) -> None:
         """Draw the session's state in the scene."""

@@ -8,6 +8,7 @@ import { arrowOf, turned, ZOOM } from "./keys.js";
 /** @import { Scene } from "./scene.js" */
 
 const LEAST = 200; // [pixels] of a picture's sides
+const GAP = 4; // [pixels] between what stands under it
 /** @type {Record<string, [string, string]>} key: label of its button, and what it does */
 const OWN = {
   0: ["View back", "looks from where it was at first"],
@@ -42,10 +43,13 @@ export class Looking {
     set(stage, { ...OWN_KEYS, role: "application", tabindex: 0 });
     const { signal } = this.#away;
     listenTo(stage, this.#first(), { capture: true, signal });
-    const events = { keydown: this.#press, dblclick: () => this.act("0") };
+    const choose = () => stage.focus({ preventScroll: true });
+    const events = { keydown: this.#press, dblclick: () => this.act("0"), click: choose };
     listenTo(stage, events, { signal });
     listenTo(this.#box, { fullscreenchange: () => this.#fit() }, { signal });
-    listenTo(window, { resize: () => this.#before && this.#fit() }, { signal });
+    const sizes = new ResizeObserver(() => this.#before && this.#fit()); // and of the screen
+    for (const one of [el, document.body]) sizes.observe(one);
+    this.#stops.push(() => sizes.disconnect());
     const tools = element("div", { class: "ikteach-tools", role: "toolbar", ...OWN_KEYS });
     tools.setAttribute("aria-label", "Picture");
     el.prepend(tools);
@@ -84,7 +88,11 @@ export class Looking {
       if (!event.ctrlKey && !event.metaKey) pass(event);
     };
     const wheels = { wheel, mousewheel: wheel, MozMousePixelScroll: wheel };
-    return { ...wheels, touchstart: pass, touchmove: pass };
+    // The camera keeps a mouse from choosing what it presses; a finger may only want to scroll.
+    const pointerdown = (/** @type {PointerEvent} */ event) => {
+      if (event.pointerType !== "touch") this.#stage.focus({ preventScroll: true });
+    };
+    return { ...wheels, pointerdown, touchstart: pass, touchmove: pass };
   }
 
   #press = (/** @type {KeyboardEvent} */ event) => {
@@ -115,9 +123,9 @@ export class Looking {
     const full = document.fullscreenElement === this.#box;
     if (full) {
       this.#before ??= this.#scene.size;
-      const others = this.#box.scrollHeight - this.#stage.offsetHeight;
-      const height = Math.max(window.innerHeight - others, LEAST);
-      this.#scene.resize(window.innerWidth, height);
+      const others = [...this.#box.children].filter((one) => !one.contains(this.#stage));
+      const under = others.reduce((sum, { clientHeight }) => sum + clientHeight + GAP, 0);
+      this.#scene.resize(window.innerWidth, Math.max(window.innerHeight - under, LEAST));
     } else if (this.#before) {
       this.#scene.resize(...this.#before);
       this.#before = null;
