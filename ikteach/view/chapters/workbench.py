@@ -107,6 +107,7 @@ class Workbench(Live):
             "begin": Does(button("Begin again"), self.begin_again),
             "quit": Does(button("Quit"), self.quit),
         }
+        row["begin"].control.layout.display = "none"  # until nobody can run the cell: `stay`
         return Panel("Session", [row], guard=self.guarded)
 
     # What the loop calls.
@@ -177,8 +178,9 @@ class Workbench(Live):
         self._look_at(self.session.log())
 
     def stay(self) -> None:
-        """Take the button Quit away, for a page without a cell."""
+        """Begin again in place of Quit, on a page without a cell."""
         self.bar.controls["quit"].layout.display = "none"
+        self.bar.controls["begin"].layout.display = None
 
     def keep_no_files(self) -> None:
         """Take the panel Recording away, for good.
@@ -196,7 +198,7 @@ class Workbench(Live):
         for panel in self.panels.values():
             panel.restore()
         self.wounds.heal_drawing()
-        self._set_figures(ONE)
+        self.view.renew() if self.figures == ONE else self._set_figures(ONE)
         self.set_pace(0)
         self._agree()
         self.play()

@@ -44,7 +44,7 @@ class Live(Cell):
         self.playing = True
         self.play_button = play_button()
         self.play_button.observe(self._toggled, "value")
-        self._changes, self._slow = 0, 0  # of PACES
+        self._changes, self._slow, self._rested = 0, 0, False
         self._task: asyncio.Task[None] | None = None
         self.watch(scene)
 
@@ -150,7 +150,9 @@ class Live(Cell):
 
     def _rest(self) -> None:
         """Stand still at first, for a page whose reader wants nothing to move by itself."""
-        self._set_playing(False)
+        if not self._rested:
+            self._rested = True
+            self._set_playing(False)
 
     def _toggled(self, change: Any) -> None:
         if change["new"] != self.playing:  # by a person, and not by `say_playing`

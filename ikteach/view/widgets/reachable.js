@@ -52,6 +52,7 @@ function mend(figure) {
 function mendHeading(heading) {
   const open = Boolean(heading.closest(`.${CLOSED}`)?.classList.contains(OPEN));
   tell(heading, { role: "button", tabindex: 0, "aria-expanded": open });
+  for (const mark of heading.querySelectorAll("i")) tell(mark, { "aria-hidden": true });
 }
 
 /** @param {Element} slider */
