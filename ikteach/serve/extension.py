@@ -7,10 +7,16 @@ It also reads every message of a kernel twice, once to pass it on and once to kn
 uses the kernel, which is half of what a frame costs it. Of the second kind it is told here to take
 only what tells of cells: that they run, are done, print or show something.
 
+And a notebook whose kernel has ended is handed out with still pictures in place of its live
+figures, as `fallback` says.
+
 `python -m ikteach` turns the extension on. Without it everything works, less smoothly.
 """
 
+import inspect
 from typing import Any
+
+from ikteach.serve.fallback import without_dead_views
 
 CELLS = b"kernel.", b"stream.", b"display_data"  # how topics begin; those of widgets with "comm-"
 
@@ -20,7 +26,7 @@ def _jupyter_server_extension_points() -> list[dict[str, str]]:
 
 
 def _load_jupyter_server_extension(server: Any) -> None:
-    for step in (send_at_once, watch_cells):
+    for step in (send_at_once, watch_cells, show_stills):
         try:
             step(server)
         except (ImportError, AttributeError) as missing:
@@ -59,3 +65,21 @@ def watch_cells(server: Any) -> None:
                 socket.subscribe(topic)
 
     manager.start_watching_activity = watch_cells_of
+
+
+def show_stills(server: Any) -> None:
+    """Have notebooks without a kernel show still figures."""
+    contents, sessions = server.contents_manager, server.session_manager
+    get = contents.get
+    if not inspect.iscoroutinefunction(get):
+        raise AttributeError(f"{type(contents).__name__}.get does not wait")
+
+    async def get_without_dead_views(path: str, *args: Any, **kwargs: Any) -> Any:
+        model = await get(path, *args, **kwargs)
+        if model["type"] == "notebook" and model["content"]:
+            living = {one["path"].strip("/") for one in await sessions.list_sessions()}
+            if path.strip("/") not in living:
+                without_dead_views(model["content"])
+        return model
+
+    contents.get = get_without_dead_views

@@ -65,7 +65,7 @@ def folder(lab: Lab) -> set[str]:
 
 
 def test_a_movie_is_recorded_while_the_notebook_goes_on(book: Notebook, lab: Lab) -> None:
-    fill(book, "File name", "stroll")
+    fill(book, "Movie file", "stroll")
     fill(book, "Width [pixels]", "320")
     fill(book, "Height", "240")
     fill(book, "Seconds", "1.5")
@@ -107,7 +107,7 @@ def test_a_file_is_replaced_only_when_asked(book: Notebook, lab: Lab) -> None:
 
 
 def test_stop_leaves_no_file(book: Notebook, lab: Lab) -> None:
-    fill(book, "File name", "stroll on")
+    fill(book, "Movie file", "stroll on")
     book.press("GIF")
     fill(book, "Seconds", "30")
     book.press("Start recording")

@@ -38,7 +38,9 @@ beforeEach(async () => {
   status = new Element();
   still = { on: false, followed: [], follow: (news) => still.followed.push(news), stop() {} };
   at = undefined;
-  driver = new Driver({ model }, status, still);
+  const el = { closest: () => null }; // its picture is not in the page
+  driver = new Driver({ model, el }, status, still, { show() {} });
+  globalThis.matchMedia = () => ({ matches: false });
   await driver.begin();
   model.sent = [];
 });

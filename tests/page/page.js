@@ -85,6 +85,7 @@ export class Element {
   remove() {}
 }
 
+globalThis.requestAnimationFrame = () => {}; // no frame comes, but those of a `Clock`
 globalThis.document = {
   createElement: () => new Element(),
   body: { classList: { add() {} } },

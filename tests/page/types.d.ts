@@ -73,12 +73,16 @@ interface Object3D {
 
 interface Camera extends Object3D {
   isOrthographicCamera?: boolean;
+  aspect: number;
+  left: number;
+  right: number;
+  top: number;
   zoom: number;
   updateProjectionMatrix(): void;
 }
 
 interface Controls {
-  obj: { enabled: boolean; target: Vector3; update(): void };
+  obj: { enabled: boolean; target: Vector3; minZoom: number; maxZoom: number; update(): void };
   update_controlled(): void;
 }
 

@@ -2,15 +2,22 @@
 
 import asyncio
 import sys
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import nbformat
 import pytest
+from jupyter_server.services.contents.largefilemanager import AsyncLargeFileManager
 from jupyter_server.services.kernels import websocket
 from jupyter_server.services.kernels.kernelmanager import AsyncMappingKernelManager
 from jupyter_server.services.kernels.websocket import KernelWebsocketHandler
 
-from ikteach.serve.extension import _load_jupyter_server_extension
+from ikteach.body.figures import human
+from ikteach.serve.extension import _load_jupyter_server_extension, show_stills
+from ikteach.serve.fallback import STATE, VIEW
+from ikteach.view.chapters.figure import Poser
+from ikteach.view.widgets.lacking import WIDGETS
 
 CELL = """
 from comm import create_comm
@@ -21,10 +28,28 @@ print("done")
 """
 
 
+class Sessions:
+    """The sessions of a server, by the paths of their notebooks."""
+
+    def __init__(self, *paths: str) -> None:
+        self.paths = paths
+
+    async def list_sessions(self) -> list[dict[str, Any]]:
+        return [{"path": path} for path in self.paths]
+
+
+def server(*, folder: Path = Path(), sessions: Sessions | None = None, **parts: Any) -> Any:
+    """As much of a server as the extension changes."""
+    contents = AsyncLargeFileManager(root_dir=str(folder))
+    return SimpleNamespace(
+        contents_manager=contents, session_manager=sessions or Sessions(), **parts
+    )
+
+
 async def activity() -> tuple[list[bytes], list[str]]:
     """What a server hears of a cell that sends frames: topics, and how the kernel stands by it."""
     manager = AsyncMappingKernelManager()
-    _load_jupyter_server_extension(SimpleNamespace(kernel_manager=manager))
+    _load_jupyter_server_extension(server(kernel_manager=manager))
     heard: list[bytes] = []
     stood: list[str] = []
     kernel_id = await manager.start_kernel(kernel_name="python3")
@@ -70,7 +95,7 @@ def sentence(monkeypatch: pytest.MonkeyPatch, **parts: Any) -> str:
     """What is said where a server has only these parts."""
     monkeypatch.setattr(KernelWebsocketHandler, "open", KernelWebsocketHandler.open)  # afterwards
     log = Told()
-    _load_jupyter_server_extension(SimpleNamespace(log=log, **parts))
+    _load_jupyter_server_extension(server(log=log, **parts))
     (said,) = log
     assert said.startswith("ikteach.serve.extension steps aside in ")
     return said
@@ -93,6 +118,52 @@ def test_a_kernel_that_is_not_watched_is_left_alone(monkeypatch: Any) -> None:
     manager = SimpleNamespace(
         start_watching_activity=watched.append, get_kernel=lambda kernel_id: object()
     )
-    _load_jupyter_server_extension(SimpleNamespace(kernel_manager=manager))
+    _load_jupyter_server_extension(server(kernel_manager=manager))
     manager.start_watching_activity("k")
     assert watched == ["k"]
+
+
+def saved(*shown: Any) -> nbformat.NotebookNode:
+    """A notebook whose cells have shown these."""
+    cell, out = nbformat.v4.new_code_cell, nbformat.v4.new_output
+    outputs = [out("display_data", data=bundle(one)) for one in shown]
+    return nbformat.v4.new_notebook(cells=[cell("figure", outputs=[one]) for one in outputs])
+
+
+def bundle(one: Any) -> dict[str, Any]:
+    """What a cell keeps of what it shows, but for bytes, which a file has not."""
+    answer = one if isinstance(one, dict) else one._repr_mimebundle_()
+    data = answer[0] if isinstance(answer, tuple) else answer
+    return {mime: text for mime, text in data.items() if mime != "image/png"}
+
+
+def opened(folder: Path, notebook: Any, *living: str) -> list[dict[str, Any]]:
+    """What a page is given of its outputs, while the notebooks of these paths have kernels."""
+    nbformat.write(notebook, folder / "a.ipynb")
+    one = server(folder=folder, sessions=Sessions(*living))
+    show_stills(one)
+    content = asyncio.run(one.contents_manager.get("a.ipynb"))["content"]
+    return [output["data"] for cell in content["cells"] for output in cell["outputs"]]
+
+
+def test_without_a_kernel_a_notebook_shows_stills_and_says_what_to_run(tmp_path: Path) -> None:
+    figure = Poser(human(), slot=None)
+    other = {VIEW: {"model_id": "1"}, "text/plain": "IntSlider()"}
+    plain = {"text/plain": "3"}
+    first, second, third = opened(tmp_path, saved(figure, other, plain), "b.ipynb")
+    figure.close()
+    for data in first, second:
+        assert VIEW not in data
+        assert data["text/html"].count("Run All Cells") == 1
+    assert "<img" in first["text/html"]
+    assert str(WIDGETS) not in first["text/html"]  # nothing lacks, but the kernel
+    assert third == plain
+
+
+def test_with_a_kernel_or_with_its_state_a_notebook_keeps_its_views(tmp_path: Path) -> None:
+    notebook = saved({VIEW: {"model_id": "1"}, "text/html": "a still"})
+    (data,) = opened(tmp_path, notebook, "a.ipynb")
+    assert VIEW in data
+    notebook.metadata.widgets = {STATE: {"state": {}}}
+    (data,) = opened(tmp_path, notebook)
+    assert data == {VIEW: {"model_id": "1"}, "text/html": "a still"}

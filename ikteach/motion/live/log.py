@@ -29,8 +29,23 @@ class Event(NamedTuple):
     what: Mapping[str, Any]
 
     def __str__(self) -> str:
-        words = ", ".join(f"{name} {value}" for name, value in self.what.items())
+        words = ", ".join(f"{name} {_brief(value)}" for name, value in self.what.items())
         return f"{self.kind}: {words}" if words else self.kind
+
+
+def _brief(value: Any) -> str:
+    """Write a value with as many digits as a person reads."""
+    match value:
+        case bool():
+            return "yes" if value else "no"
+        case float():
+            return str(float(f"{value:.4g}"))
+        case Mapping():
+            return f"({', '.join(f'{name} {_brief(one)}' for name, one in value.items())})"
+        case list() | tuple():
+            return f"({', '.join(map(_brief, value))})"
+        case _:
+            return str(value)
 
 
 class Moment(NamedTuple):

@@ -64,7 +64,7 @@ class Play:
         known = usual if methods is None else methods_of(methods)
         method = method or ("dls" if "dls" in known else next(iter(known)))
         motion = motion_of(self.tree, self.effectors, gait)
-        self._settings = Settings(*motion, known, method, options)
+        self._settings = self._first = Settings(*motion, known, method, options)
         self._known(method)
         self.runs = self.ticks = self._waited = 0
         self._begin()

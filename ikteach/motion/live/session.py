@@ -185,6 +185,14 @@ class Session(Play):
         self.note("undo", taken_back=str(change.event))
         return change.event
 
+    def begin_again(self) -> None:
+        """Put all settings back to the first ones, and reset.
+
+        It is one change, which can be undone.
+        """
+        self._change("begin again", {}, going_on=False, **vars(self._first))
+        self.reset()
+
     # Behind the changes.
 
     def _change(

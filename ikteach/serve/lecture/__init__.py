@@ -85,6 +85,7 @@ def workbench() -> "Workbench":
     from ikteach.view.chapters.workbench import Workbench
 
     bench = Workbench()
+    bench.stay()
     if os.environ.get(OPEN_TO_ROOM):
         bench.keep_no_files()
     return bench

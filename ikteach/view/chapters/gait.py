@@ -51,6 +51,8 @@ class GaitPlayer(Live):
         self._first = session.gait
         self.panel = self._make_panel()
         self.controls = self.panel.controls
+        self.choosing = self.controls["method"]
+        self.watch(scene)
         self.children = [
             widgets.HBox([self.scene.widget, self.panel.widget]),
             self.status,
@@ -136,10 +138,11 @@ def session_words(session: Session) -> str:
         f"{name} {length(d)}"
         for name, d in zip(session.effectors.names, session.error, strict=True)
     )
-    motion = "by hand" if session.by_hand else session.gait.name
+    by = f"by {session.method}"
+    moves = f"{by}, its targets set by hand" if session.by_hand else f"{session.gait.name} {by}"
     wounded = "wounded, " if session.gait.wound else ""
     who = "human" if isinstance(session.gait, Gait) else "figure"
-    return f"A {who}, {wounded}{motion} by {session.method}. From its target: {far}."
+    return f"A {who}, {wounded}{moves}. From its target: {far}."
 
 
 def session_table(session: Session, shown: str | None = None) -> Markup:

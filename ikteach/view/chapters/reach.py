@@ -97,6 +97,8 @@ class Simulator(Live):
         self._cursor, self._table = Prose(), Prose()
         self.panel = self._panel()
         self.controls = self.panel.controls
+        self.choosing = self.controls["method"]
+        self.watch(self.scene)
         self.scene.widget.layout = widgets.Layout(flex="0 0 auto", width="552px")
         beside = widgets.HBox(
             [self.scene.widget, self.panel.widget], layout=widgets.Layout(flex_flow="row wrap")

@@ -20,7 +20,7 @@ from ikteach.view.tools.inspector import Glass
 from ikteach.view.tools.recorder import Recorder
 from ikteach.view.tools.replay import Replay
 from ikteach.view.tools.session_panels import MethodPanel, WoundPanel, gait_panel, motion_panel
-from ikteach.view.tools.view_panels import ONE, ObjectPanel, ViewPanel, scene_of
+from ikteach.view.tools.view_panels import GHOST, ONE, ObjectPanel, ViewPanel, scene_of
 from ikteach.view.webgl.targets import Targets
 from ikteach.view.widgets.closing import close_all
 from ikteach.view.widgets.prose import Prose
@@ -57,29 +57,27 @@ class Workbench(Live):
         self.view = ViewPanel(self, self.guarded, self._turned, self._set_figures)
         self.object = ObjectPanel(self, self.guarded, self.view.straighten)
         self.panels = {panel.title: panel for panel in self._make_panels()}
+        self.choosing = self.panels["Method"].controls["method"]
+        self.watch(self.scene)
         self.bar = self._make_bar()
         self._drawer = widgets.Accordion(
             [
                 *(panel.widget for panel in self.panels.values()),
                 widgets.VBox([self.recorder, self.keeper]),
+                self.glass,
             ],
-            titles=[*self.panels, "Recording"],
+            titles=[*self.panels, "Recording", "One iteration under a glass"],
             selected_index=0,
             layout={"flex": "1 1 430px", "max_width": "640px", "min_width": "0"},
         )
-        self._stage = widgets.VBox([self.bar.widget, self.scene.widget])
-        self._fit()
         self._table, self._aside = Prose(), widgets.VBox()
-        glass = widgets.Accordion(
-            [self.glass], titles=["One iteration under a glass"], selected_index=None
-        )
+        self._stage = widgets.VBox([self.bar.widget, self.scene.widget, self._aside])
+        self._fit()
         self.children = [
             widgets.HBox([self._stage, self._drawer], layout={"flex_flow": "row wrap"}),
             self.status,
-            self._aside,
             self.strips,
             self._table,
-            glass,
         ]
         self.view.straighten()
         self._agree()
@@ -106,8 +104,10 @@ class Workbench(Live):
             "reset": Does(button("Reset"), self._reset),
             "scrub": Does(button("Look back"), self.scrub),
             "live": Does(button("Back to now"), self._back_to_now),
+            "begin": Does(button("Begin again"), self.begin_again),
             "quit": Does(button("Quit"), self.quit),
         }
+        row["begin"].control.layout.display = "none"  # until nobody can run the cell: `stay`
         return Panel("Session", [row], guard=self.guarded)
 
     # What the loop calls.
@@ -117,7 +117,8 @@ class Workbench(Live):
         if self.replay is not None:
             return
         session = self.session
-        shown = [session.method] if self.figures == ONE else list(SOLVERS)
+        shown = [session.method, self.view.values["ghost"]] if self.figures == GHOST else SOLVERS
+        shown = [session.method] if self.figures == ONE else list(shown)
         theta = self.wounds.drawn(np.array([session.theta[name] for name in shown]))
         self.scene.show(
             theta[0] if len(shown) == 1 else theta,
@@ -176,12 +177,31 @@ class Workbench(Live):
         """Stop the clock, and look through the log."""
         self._look_at(self.session.log())
 
+    def stay(self) -> None:
+        """Begin again in place of Quit, on a page without a cell."""
+        self.bar.controls["quit"].layout.display = "none"
+        self.bar.controls["begin"].layout.display = None
+
     def keep_no_files(self) -> None:
         """Take the panel Recording away, for good.
 
         For a page that others operate.
         """
-        close_all(self._drawer.children[-1])
+        close_all(self._drawer.children[-2])
+        self._drawer.titles = [title for title in self._drawer.titles if title != "Recording"]
+
+    def begin_again(self) -> None:
+        """Put all back to the beginning, and play."""
+        self._back_to_now()
+        self.session.begin_again()
+        self.scene.clear()
+        for panel in self.panels.values():
+            panel.restore()
+        self.wounds.heal_drawing()
+        self.view.renew() if self.figures == ONE else self._set_figures(ONE)
+        self.set_pace(0)
+        self._agree()
+        self.play()
 
     def step(self) -> None:
         """Stop the clock, and let time leap once."""
@@ -219,10 +239,11 @@ class Workbench(Live):
         self._back_to_now()
         old, old_targets = self.scene, self.targets
         self.watch(scene_of(self.session, figures))
+        self.scene.driver.measures = figures in (ONE, GHOST)
         self.targets = self._targets()
         box = self.panels["Target position"].widget
         box.children = [self.targets, *box.children[1:]]
-        self._stage.children = [self.bar.widget, self.scene.widget]
+        self._stage.children = [self.bar.widget, self.scene.widget, self._aside]
         self._fit()
         old_targets.close()
         old.close()
@@ -247,6 +268,7 @@ class Workbench(Live):
         self._back_to_now()
         self.replay = Replay(run, self.scene, slot=None)
         self._aside.children = [self.replay]
+        self.replay.status.come()
         self.status.say("A run is looked at. Play, or “Back to now”, goes on where it stopped.")
 
     def _back_to_now(self) -> None:

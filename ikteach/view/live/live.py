@@ -1,15 +1,19 @@
 """A figure that runs: time passes in its session, and the scene follows."""
 
 import asyncio
+from collections.abc import Callable
+from functools import partial
 from time import monotonic
 from typing import Any
 
-from ikteach.view.live.panel import play_button
+from ikteach.view.live.panel import play_button, press
 from ikteach.view.live.strips import EVERY, Strips
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets.actor import message_of
 from ikteach.view.widgets.cell import Cell
 from ikteach.view.widgets.picture import Still
+
+PACES = ("1×", "½×", "¼×")  # how fast time passes: each half as fast as the one before
 
 
 class Live(Cell):
@@ -22,12 +26,15 @@ class Live(Cell):
     strips       the curves that run along with it, if there are any
     play_button  plays and pauses
 
+    choosing     the control that chooses the method, if there is one
+
     The loop runs only while it plays and somebody looks. Without a notebook there is none: nothing
     moves by itself, and `step()` lets a tick pass.
     """
 
     REPORT_EVERY = 30  # ticks
     SELDOM = 3  # times as rarely come curves and words, where the machine is too slow for all
+    choosing: Any = None
 
     def __init__(
         self, session: Any, scene: Scene, slot: str | None, strips: Strips | None = None
@@ -37,14 +44,40 @@ class Live(Cell):
         self.playing = True
         self.play_button = play_button()
         self.play_button.observe(self._toggled, "value")
-        self._changes = 0
+        self._changes, self._slow, self._rested = 0, 0, False
         self._task: asyncio.Task[None] | None = None
         self.watch(scene)
 
     def watch(self, scene: Scene) -> None:
         """Have this scene follow the session from now on."""
         self.scene, self.note = scene, scene.note
-        scene.driver.on_page = self._seen
+        scene.driver.on_page, scene.driver.on_calm = self._seen, self._rest
+        scene.driver.pace, scene.driver.measures = PACES[self._slow], len(scene.stage) == 1
+        scene.offer({key: (words, self.guarded(act)) for key, (words, act) in self.acts().items()})
+
+    def acts(self) -> dict[str, tuple[str, Callable[[], object]]]:
+        """Give what keys at the picture do: {key: (words, action)}.
+
+        The actions act as a person does who presses a button.
+        """
+        methods = [] if self.choosing is None else [str(one) for one in self.choosing.options]
+        return {
+            " ": ("plays and pauses", lambda: press(self.play_button, not self.play_button.value)),
+            ".": ("lets one tick pass", self.step),
+            "s": ("slows time down to a half, to a quarter, and no more", self.slow_down),
+            **{
+                str(i): (f"shows {name}", partial(press, self.choosing, name))
+                for i, name in enumerate(methods[:9], start=1)
+            },
+        }
+
+    def slow_down(self) -> None:
+        """Let time pass at the next of `PACES`."""
+        self.set_pace((self._slow + 1) % len(PACES))
+
+    def set_pace(self, slow: int) -> None:
+        """Let time pass at one of `PACES`."""
+        self._slow, self.scene.driver.pace = slow, PACES[slow]
 
     def draw(self) -> None:
         """Draw the session's state in the scene."""
@@ -115,6 +148,12 @@ class Live(Cell):
         self.say_playing(on)
         self.wake()
 
+    def _rest(self) -> None:
+        """Stand still at first, for a page whose reader wants nothing to move by itself."""
+        if not self._rested:
+            self._rested = True
+            self._set_playing(False)
+
     def _toggled(self, change: Any) -> None:
         if change["new"] != self.playing:  # by a person, and not by `say_playing`
             self.guarded(self.play if change["new"] else self.pause)()
@@ -144,7 +183,8 @@ class Live(Cell):
         """Let time pass, tick by tick, while it plays and somebody looks."""
         due, session = monotonic(), self.session
         while self.playing and not (self.settled or self.scene.driver.unwatched):
-            due = max(due + session.dt, monotonic() - session.dt)  # late: go on, do not race
+            tick = session.dt * 2**self._slow
+            due = max(due + tick, monotonic() - tick)  # late: go on, do not race
             await asyncio.sleep(max(due - monotonic(), 0.001))
             if not self.playing:
                 break

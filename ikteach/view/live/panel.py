@@ -58,6 +58,7 @@ class Panel:
         if folded:
             parts = [widgets.VBox([self._box(row) for row in part]) for part in folded.values()]
             boxes.append(widgets.Accordion(parts, titles=list(folded), selected_index=opened))
+        self._first = self.values
         self.widget = widgets.VBox(boxes, layout=layout)
 
     @property
@@ -90,6 +91,10 @@ class Panel:
     def agree(self) -> None:
         """Set controls to the values of `shows`, without acting."""
         self.put(**self._shows())
+
+    def restore(self) -> None:
+        """Set controls to their first values, without acting."""
+        self.put(**self._first)
 
     def disable(self) -> None:
         """Disable all controls: no person changes anything more."""
@@ -215,6 +220,12 @@ def play_button() -> Any:
 
     made.observe(name, "value")
     return made
+
+
+def press(control: Any, value: Any) -> None:
+    """Set a control as a person does, if it is enabled."""
+    if not control.disabled:
+        control.value = value
 
 
 def _look(

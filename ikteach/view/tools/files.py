@@ -37,7 +37,7 @@ class Keeper(Cell):
         open_run = function("open_run", open_run or self._replay)
         super().__init__(slot)
         self.session, self.folder, self._open_run = session, folder, open_run
-        self.name = widgets.Text(value="session", description="File name")
+        self.name = widgets.Text(value="session", description="Session file")
         self.replace = tick_box("replace files of that name")
         self.saving = self.button("Save the session", self._save)
         self.opening = self.button("Open and replay", self._open)
@@ -66,5 +66,7 @@ class Keeper(Cell):
         self.status.say(f"{len(run)} ticks and {len(run.events)} events are open. {run.lost()}")
 
     def _replay(self, run: Log) -> None:
-        before, self.place.children = self.place.children, [Replay(run, slot=None)]
+        replay = Replay(run, slot=None)
+        before, self.place.children = self.place.children, [replay]
         close_all(*before)
+        replay.status.come()

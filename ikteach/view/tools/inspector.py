@@ -80,6 +80,7 @@ class Glass(Cell):
         )
         self._pages.clear()
         self._turn_to(self.number)
+        self.status.come(with_all=True)
 
     def advance(self) -> None:
         """Let the tick that was looked at happen.

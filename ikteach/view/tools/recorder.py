@@ -43,7 +43,7 @@ class Recorder(Cell):
         self.session, self.folder = session, folder
         self._task: asyncio.Task[None] | None = None
         self._stop = False
-        self.name = widgets.Text(value="walk", description="File name", style=LABEL)
+        self.name = widgets.Text(value="walk", description="Movie file", style=LABEL)
         kinds = [(ending[1:].upper(), ending) for ending in movie.KINDS]
         look = {"button_width": "auto", **LABEL}
         self.kind = widgets.ToggleButtons(options=kinds, description="Format", style=look)
@@ -116,7 +116,7 @@ class Recorder(Cell):
             self.status.fail(_sentence(error))
         else:
             self.progress.value = self.progress.max
-            self.status.say(f"{path} is complete: {frames} frames.")
+            self.status.say(f"{path.resolve()} is complete: {frames} frames.")
         finally:
             self.start.disabled, self.stop.disabled = False, True
 

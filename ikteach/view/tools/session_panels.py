@@ -41,12 +41,12 @@ BY_HAND = "by hand"
 LABEL: dict[str, Any] = {"label_width": "150px"}
 LOOK: dict[str, Any] = {"width": "380px", **LABEL}
 
-# Option of a solver: label, lowest, highest, whether its slider is logarithmic.
-OPTIONS: Mapping[str, tuple[str, float, float, bool]] = {
-    "gain": ("gain [share of α]", 0.05, 2.0, False),
-    "cutoff": ("cutoff [share of σ_max]", 0.0, 0.5, False),
-    "damping": ("damping λ [m/rad]", 1e-3, 1.0, True),
-    "max_angle": ("γ_max [rad]", 0.05, pi, False),
+# Option of a solver: label, lowest, highest, step of its slider; none where it is logarithmic.
+OPTIONS: Mapping[str, tuple[str, float, float, float | None]] = {
+    "gain": ("gain [share of α]", 0.05, 2.0, 0.01),
+    "cutoff": ("cutoff [share of σ_max]", 0.0, 0.5, 0.01),
+    "damping": ("damping λ [m/rad]", 1e-3, 1.0, None),
+    "max_angle": ("γ_max [rad]", pi / 60, pi, pi / 180),  # π/4 is among its steps of 1°
 }
 # Parameter of the gait: label, lowest, highest, step.
 SLIDERS: Mapping[str, Mapping[str, tuple[str, float, float, float]]] = {
@@ -153,12 +153,12 @@ def options_of(solver: Solver) -> dict[str, Any]:
         if option.name == "clamp":
             controls["clamp"] = choice(f"{label}clamp", list(CLAMPS), **LABEL)
         elif option.name in OPTIONS:
-            words, low, high, logarithmic = OPTIONS[option.name]
+            words, low, high, step = OPTIONS[option.name]
             value, label = float(option.default), label + words
             controls[option.name] = (
                 log_slider(label, value, log10(low), log10(high), 0.02, **LOOK)
-                if logarithmic
-                else slider(label, value, low, high, 0.01, **LOOK)
+                if step is None
+                else slider(label, value, low, high, step, **LOOK)
             )
         else:
             raise LookupError(unknown("option with a slider", option.name, OPTIONS))
@@ -236,8 +236,12 @@ class WoundPanel(Panel):
         self.plus[self._joint] = radians(degrees)
         self.session.note("drawn", joint=self.values["joint"], value=round(radians(degrees), 4))
 
-    def _heal(self) -> None:
+    def heal_drawing(self) -> None:
+        """Draw all joints as they are."""
         self.times[:], self.plus[:] = 1, 0
+
+    def _heal(self) -> None:
+        self.heal_drawing()
         self.session.change(wound={})
 
 

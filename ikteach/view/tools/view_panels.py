@@ -18,16 +18,19 @@ from ikteach.view.tools.session_panels import LABEL, LOOK, Guard
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets.ball import RotationBall
 
-ONE, BESIDE, OVER = "one figure", "all methods, side by side", "all methods, overlaid"
+ONE, GHOST = "one figure", "one and a ghost"
+BESIDE, OVER = "all, side by side", "all, overlaid"
 
 
 def scene_of(session: Session, figures: str) -> Scene:
     """Make the scene of one figure, or of several.
 
-    There is one per method, if there are several.
+    There is one per method, if there are several; a ghost stands in the place of the other.
     """
     if figures == ONE:
         return Scene(session.tree, session.effectors, slot=None)
+    if figures == GHOST:
+        return Scene(session.tree, session.effectors, names=["shown", "ghost"], apart=0, slot=None)
     apart, width = (0.0, 540) if figures == OVER else (None, 720)
     names = list(SOLVERS)
     return Scene(session.tree, session.effectors, names=names, apart=apart, width=width, slot=None)
@@ -48,7 +51,7 @@ class ViewPanel(Panel):
         turned: Callable[[], object],
         set_figures: Callable[[str], object],
     ) -> None:
-        self.live, self._turned = live, turned
+        self.live, self._turned, self._set_figures = live, turned, set_figures
         names = list(live.session.effectors.names)
         layers = {
             f"layer.{name}": Does(
@@ -58,13 +61,15 @@ class ViewPanel(Panel):
             for name in (*LAYERS, "targets")
         }
         projections = choice("Projection", ["perspective", "orthographic"], **LABEL)
-        figures = dropdown("Figures", [ONE, BESIDE, OVER], **LABEL)
+        figures = dropdown("Figures", [ONE, GHOST, BESIDE, OVER], **LABEL)
+        ghost = dropdown("ghost", list(live.session.methods), **LABEL)
         super().__init__(
             "View",
             [
                 {"side": Does(dropdown("View", list(CAMERAS), **LABEL), self.look_from)},
                 {"projection": Does(projections, self._project)},
                 {"figures": Does(figures, set_figures)},
+                {"ghost": Does(ghost, lambda _: self._haunt())},
                 layers,
                 {"effector": dropdown("J and ellipsoid of", names, **LABEL)},
                 {"dark": Does(tick_box("dark"), self._darken)},
@@ -82,11 +87,11 @@ class ViewPanel(Panel):
         self.look_from(self.values["side"])
 
     def renew(self) -> None:
-        """Have another scene show the same as the last one."""
+        """Have the scene show what the controls say."""
         values = self.values
         for name, on in values.items():
-            if name.startswith("layer.") and on:
-                self._switch(name.removeprefix("layer."), True)
+            if name.startswith("layer."):
+                self._switch(name.removeprefix("layer."), on)
         self._darken(values["dark"])
         self._project(values["projection"])
         self.straighten()
@@ -113,6 +118,12 @@ class ViewPanel(Panel):
                 target.visible = on
         else:
             self.live.scene.switch(layer, on)
+
+    def _haunt(self) -> None:
+        """Show a ghost, as soon as one is chosen."""
+        if self.values["figures"] != GHOST:
+            self.put(figures=GHOST)
+            self._set_figures(GHOST)
 
     def _project(self, how: str) -> None:
         self.live.scene.cameras.orthographic = how == "orthographic"

@@ -84,6 +84,7 @@ class Cameras:
     def _bound(self, turning: three.OrbitControls) -> None:
         """Let the wheel come no closer than can be drawn, and go no farther than can be seen."""
         turning.minDistance, turning.maxDistance = self._usual / 20, 10 * self._usual
+        turning.minZoom, turning.maxZoom = 1 / 10, 20.0  # the same of a parallel camera
 
     @property
     def angles(self) -> tuple[float, float]:

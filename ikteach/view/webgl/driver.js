@@ -8,19 +8,24 @@ import { floats } from "../widgets/binary.js";
 import { element, listen } from "../widgets/dom.js";
 import { complain, guarded } from "../widgets/guarded.js";
 import { resolve } from "../widgets/models.js";
+import { Far } from "./far.js";
+import { Looking } from "./looking.js";
 import { parts, whole } from "./movers.js";
 import { Pictures } from "./pictures.js";
-import { hasWebGL, sceneOf } from "./scene.js";
+import { hasWebGL, sceneOf, stageOf } from "./scene.js";
 
 /** @import { Scene } from "./scene.js" */
 
 const REPORT_EVERY = 15; // frames; each report makes the kernel busy and idle, and the page says so
+const CALM = "(prefers-reduced-motion: reduce)"; // nothing is to move by itself
 const LATE = 5000; // [ms] after which a figure that is not there counts as missing
 
 export class Driver {
   #gone = false;
   /** @type {Scene | undefined} */
   #scene;
+  /** @type {Looking | undefined} */
+  #looking;
   /** @type {Mover[]} */
   #movers = [];
   #rows = -1; // that a frame for these movers has
@@ -34,17 +39,20 @@ export class Driver {
   #model;
   #status;
   #still;
+  #far;
 
   /**
    * @param {Given} given
    * @param {HTMLElement} status says what the picture shows
    * @param {Pictures} still stands in while there is no figure
+   * @param {Far} far shows the distances
    */
-  constructor(given, status, still) {
+  constructor(given, status, still, far) {
     this.#given = given;
     this.#model = given.model;
     this.#status = status;
     this.#still = still;
+    this.#far = far;
   }
 
   /** Wait for the scene of pythreejs; pictures stand in until it comes, if that takes long. */
@@ -57,18 +65,27 @@ export class Driver {
     this.#scene = scene;
     this.#still.stop();
     this.#stopDrawn = listen(scene.model, { afterRender: () => this.#drawn() });
+    this.#look(scene).catch((error) => complain(this.#given.el, error));
     await this.gather();
+  }
+
+  /** @param {Scene} scene */
+  async #look(scene) {
+    const { el } = this.#given;
+    const stage = await stageOf(el, () => this.#gone);
+    if (stage) this.#looking = new Looking(scene, stage, el, this.#model);
   }
 
   end() {
     this.#gone = true;
+    this.#looking?.end();
     this.#still.stop();
     this.#stopDrawn();
   }
 
   /** Ask the kernel for the newest frame, in a page that is looked at. */
   hello() {
-    if (!document.hidden) this.#model.send({ hello: true });
+    if (!document.hidden) this.#model.send({ hello: true, calm: matchMedia(CALM).matches });
   }
 
   /** Take the objects that the kernel wants moved. */
@@ -92,10 +109,11 @@ export class Driver {
 
   /**
    * Take a message of the kernel: a frame, or a picture for want of a scene.
-   * @param {Partial<Frame> & { picture?: number, wrong?: string }} content
+   * @param {Partial<Frame> & { picture?: number, wrong?: string, far?: string[] }} content
    * @param {DataView[]} [buffers]
    */
-  receive({ wrong, picture, frame, change = 0 }, [bytes] = []) {
+  receive({ wrong, picture, frame, change = 0, far }, [bytes] = []) {
+    this.#far.show(far);
     if (wrong !== undefined) throw new Error(wrong);
     if (picture !== undefined) {
       this.#still.put(picture, bytes);
@@ -147,8 +165,10 @@ export class Driver {
 function render(given) {
   const { model, el } = given;
   const status = element("p", { class: "ikteach-driver", role: "img" });
-  el.append(status);
-  const driver = new Driver(given, status, new Pictures(el, () => model.send({ picture: true })));
+  const far = new Far(model.get("effectors"));
+  el.append(far.box, status);
+  const pictures = new Pictures(el, () => model.send({ picture: true }));
+  const driver = new Driver(given, status, pictures, far);
 
   function describe() {
     const words = model.get("description");

@@ -33,14 +33,29 @@ class Driver(Living, anywidget.AnyWidget):
     on_page       is called with True when a page begins to look and with False when it has
                   drawn, from whichever thread hears of it
     as_png        draws the last moment, for a page that lacks pythreejs or WebGL
+    acts          {key: what it does}, of keys that the page hands on to
+    on_act        which is called with the key
+    on_calm       is called once, if the first page is to have nothing that moves by itself
+    pace          how fast time passes, in words; none where it does not pass
+    measures      whether there are distances to show, and
+    measuring     whether the page shows those that `show` gives, of
+    effectors     [name, colour] of each
     """
 
-    _esm, _css = script("view/webgl/driver.js"), style("view/webgl/driver.css")
+    _esm, _css = (
+        script("view/webgl/driver.js"),
+        style("view/webgl/driver.css", "view/webgl/looking.css"),
+    )
     renderer = traitlets.Instance(Widget).tag(sync=True, **widget_serialization)
     nodes = traitlets.List(traitlets.Instance(Widget)).tag(sync=True, **widget_serialization)
     plan: Any = traitlets.List().tag(sync=True)
     rows = traitlets.Int().tag(sync=True)
     description = traitlets.Unicode().tag(sync=True)
+    acts: Any = traitlets.Dict().tag(sync=True)
+    pace = traitlets.Unicode().tag(sync=True)
+    measures = traitlets.Bool(False).tag(sync=True)
+    measuring = traitlets.Bool(False).tag(sync=True)
+    effectors: Any = traitlets.List().tag(sync=True)
     lacking = traitlets.Dict(LACKING, read_only=True).tag(sync=True)
 
     def __init__(self, renderer: Widget, **kwargs: Any) -> None:
@@ -50,6 +65,8 @@ class Driver(Living, anywidget.AnyWidget):
         self.seen = False
         self.heard = monotonic()
         self.on_page: Callable[[bool], None] = lambda new: None
+        self.on_act: Callable[[str], object] = lambda key: None
+        self.on_calm: Callable[[], object] = lambda: None
         self.as_png: Callable[[], bytes] = bytes
         self._asked = False
         self._act = Actor()
@@ -64,12 +81,18 @@ class Driver(Living, anywidget.AnyWidget):
             self.nodes, self.plan = [node for node, _ in moves], [how for _, how in moves]
             self.rows = rows
 
-    def show(self, matrices: Array, change: int = 0) -> None:
-        """Send [R | p] (rows, 3, 4) to the page. `change` comes back with the drawn frame."""
+    def show(self, matrices: Array, change: int = 0, far: Sequence[str] | None = None) -> None:
+        """Send [R | p] (rows, 3, 4) to the page.
+
+        `change` comes back with the drawn frame; `far` are the distances in words, to be shown.
+        """
         self.sent += 1
         self._change = change
         numbers = matrices.swapaxes(-1, -2).astype("<f4")
-        self.send({"frame": self.sent, "change": change}, buffers=[numbers.tobytes()])
+        content: dict[str, Any] = {"frame": self.sent, "change": change}
+        if far is not None:
+            content["far"] = far
+        self.send(content, buffers=[numbers.tobytes()])
 
     @property
     def ready(self) -> bool:
@@ -95,8 +118,15 @@ class Driver(Living, anywidget.AnyWidget):
                 self._asked = True
                 self._act(self._depict, lambda words: self.send({"wrong": words}))
             return
+        if "act" in content:
+            self._act(
+                lambda: self.on_act(str(content["act"])), lambda words: self.send({"wrong": words})
+            )
+            return
         new = "hello" in content
         if new:
+            if not self.seen and content.get("calm"):
+                self.on_calm()
             self.seen = True
             self.drawn = self.sent  # what was under way to a page that has gone is lost
         else:

@@ -1,19 +1,19 @@
 // Moves targets in the picture. A target follows at once, here in the page; the kernel hears of it,
 // and its frames are shown again once they have caught up.
 
-import { element, listen, OWN_KEYS, set } from "../widgets/dom.js";
+import { element, listen, listenTo } from "../widgets/dom.js";
 import { complain, guarded } from "../widgets/guarded.js";
 import { resolve } from "../widgets/models.js";
 import { Courier } from "./courier.js";
 import { Keys } from "./keys.js";
 import { Picking } from "./picking.js";
 import { Pins } from "./pins.js";
-import { sceneOf } from "./scene.js";
+import { sceneOf, stageOf } from "./scene.js";
 
 /** @import { Scene } from "./scene.js" */
 
 const CAMERA =
-  "Arrows turn the camera, page up goes nearer, page down farther. Tab chooses a target.";
+  "Arrows turn the camera, page up goes nearer, page down farther. Tab chooses a target. Other keys stand under the picture.";
 const TARGET =
   "Arrows move it, page up and down in depth, shift for fine steps, Escape takes back.";
 
@@ -66,7 +66,7 @@ class Handles {
     const target = node % this.names.length;
     const low = this.#scene.vector(...this.#model.get("low")[target]);
     const high = this.#scene.vector(...this.#model.get("high")[target]);
-    const inside = at.sub(this.#place(node)).clamp(low, high);
+    const inside = this.#scene.seen(at).sub(this.#place(node)).clamp(low, high);
     this.#pins.pin(node, inside.clone().add(this.#place(node)));
     this.#post.send({ target, at: inside.toArray(), fresh });
     this.say(`${this.names[target]}: ${words(inside)}`);
@@ -109,7 +109,18 @@ class Handles {
     this.say(CAMERA);
   }
 
-  /** The events of the stage, and what they do. */
+  /** The events of the stage that are no others' if they are ours, and what they do. */
+  firstOfAll() {
+    return {
+      pointerdown: (/** @type {PointerEvent} */ event) => this.#picking.down(event),
+      touchstart: (/** @type {TouchEvent} */ event) => {
+        if (this.#picking.held) event.preventDefault(); // the finger drags, the page stays
+      },
+      keydown: (/** @type {KeyboardEvent} */ event) => this.#keys.press(event),
+    };
+  }
+
+  /** The other events of the stage, and what they do. */
   events() {
     const up = (/** @type {PointerEvent} */ event) => this.#picking.up(event);
     return {
@@ -117,7 +128,6 @@ class Handles {
       pointerup: up,
       pointercancel: up,
       lostpointercapture: up,
-      keydown: (/** @type {KeyboardEvent} */ event) => this.#keys.press(event),
       focus: () => {
         if (this.chosen < 0 && !this.#picking.held) this.invite();
       },
@@ -127,11 +137,6 @@ class Handles {
         this.say("");
       },
     };
-  }
-
-  /** @param {PointerEvent} event */
-  down(event) {
-    this.#picking.down(event);
   }
 
   keep() {
@@ -209,19 +214,6 @@ function render(given) {
 }
 
 /**
- * The picture of the scene, once it is in the page.
- * @param {HTMLElement} el
- * @param {() => boolean} gone
- */
-async function stageOf(el, gone) {
-  while (!gone()) {
-    const stage = el.closest(".ikteach-scene")?.querySelector(".jupyter-threejs");
-    if (stage) return /** @type {HTMLElement} */ (stage);
-    await new Promise(requestAnimationFrame);
-  }
-}
-
-/**
  * Have the handles hear of events; call the answer to stop that.
  * @param {HTMLElement} stage
  * @param {Scene} scene
@@ -230,13 +222,8 @@ async function stageOf(el, gone) {
  * @param {Model} model
  */
 function takeHold(stage, scene, halo, handles, model) {
-  stage.classList.add("ikteach-stage");
-  set(stage, {
-    ...OWN_KEYS,
-    role: "application",
-    tabindex: 0,
-    "aria-label": `Scene with ${handles.names.length} targets: ${handles.names.join(", ")}`,
-  });
+  const targets = handles.names.join(", ");
+  stage.setAttribute("aria-label", `Scene with ${handles.names.length} targets: ${targets}`);
   halo.visible = false;
   halo.onBeforeRender = (_, __, camera) => {
     const at = scene.position(halo.matrixWorld); // the ring is round from everywhere
@@ -245,9 +232,8 @@ function takeHold(stage, scene, halo, handles, model) {
   const away = new AbortController();
   const { signal } = away;
   // Before the camera hears of it.
-  stage.addEventListener("pointerdown", (event) => handles.down(event), { capture: true, signal });
-  for (const [name, act] of Object.entries(handles.events()))
-    stage.addEventListener(name, /** @type {EventListener} */ (act), { signal });
+  listenTo(stage, handles.firstOfAll(), { capture: true, passive: false, signal });
+  listenTo(stage, handles.events(), { signal });
   const stops = [
     listen(scene.model, { beforeRender: () => handles.keep() }),
     listen(model, { "msg:custom": (content) => handles.hear(content) }),

@@ -1,4 +1,4 @@
-// Keys. Tab goes from the camera through the targets, and out of the picture.
+// Keys that choose and move targets. Tab goes from the camera through the targets, and out of the picture.
 
 import { clamp } from "../widgets/choosing.js";
 import { take } from "../widgets/dom.js";
@@ -6,7 +6,7 @@ import { take } from "../widgets/dom.js";
 /** @import { Scene } from "./scene.js" */
 
 const TURN = 0.1; // [rad] of the camera per key press
-const ZOOM = 1.1; // of its distance
+export const ZOOM = 1.1; // of its distance
 /** @type {Record<string, [right: number, up: number, near: number]>} */
 const ARROWS = {
   ArrowLeft: [-1, 0, 0],
@@ -25,6 +25,15 @@ const KEYPAD = {
   Numpad9: "PageUp",
   Numpad3: "PageDown",
 }; // with num lock, too
+
+/**
+ * The arrow that a key is, if it is one.
+ * @param {KeyboardEvent} event
+ * @returns {[right: number, up: number, near: number] | undefined}
+ */
+export function arrowOf({ code, key }) {
+  return ARROWS[KEYPAD[code] ?? key];
+}
 
 export class Keys {
   #scene;
@@ -45,12 +54,11 @@ export class Keys {
   /** @param {KeyboardEvent} event */
   press(event) {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
-    const arrow = ARROWS[KEYPAD[event.code] ?? event.key];
+    const arrow = arrowOf(event);
     if (event.key === "Tab") {
       if (!this.#tab(event.shiftKey)) return;
     } else if (event.key === "Escape") this.#handles.undo();
-    else if (!arrow) return;
-    else if (this.#handles.chosen < 0) this.#turn(arrow);
+    else if (!arrow || this.#handles.chosen < 0) return;
     else this.#push(arrow, event);
     take(event);
   }
@@ -77,21 +85,6 @@ export class Keys {
     const { chosen } = this.#handles;
     const at = this.#handles.where(chosen).add(this.#scene.vector(...move));
     this.#handles.move(chosen, at, !repeat);
-  }
-
-  /** @param {[number, number, number]} arrow */
-  #turn(arrow) {
-    const { camera, controls } = this.#scene;
-    const { target } = controls[0].obj;
-    const { x, y, z } = camera.position.clone().sub(target);
-    camera.position.copy(target).add(this.#scene.vector(...turned([x, y, z], arrow)));
-    if (camera.isOrthographicCamera) {
-      camera.zoom /= ZOOM ** arrow[2];
-      camera.updateProjectionMatrix();
-    }
-    controls[0].obj.update();
-    controls[0].update_controlled();
-    this.#scene.redraw();
   }
 }
 

@@ -3,7 +3,7 @@
 Every frame goes to the page as one message of the driver: a matrix for each thing that moves.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Unpack
 
 import ipywidgets as widgets
@@ -16,8 +16,9 @@ from ikteach.names import unknown
 from ikteach.view.raster.drawing import Drawing
 from ikteach.view.raster.still import png
 from ikteach.view.stage.basics import BASICS, TargetMarks
-from ikteach.view.stage.colours import paper
+from ikteach.view.stage.colours import effector_colour, paper
 from ikteach.view.stage.layers import LAYERS
+from ikteach.view.stage.lengths import Lengths
 from ikteach.view.stage.stage import FIELD, About, Now, Stage
 from ikteach.view.webgl import objects
 from ikteach.view.webgl.cameras import Cameras
@@ -76,8 +77,12 @@ class Scene(Living):
         self._furnish(size)
         self._drawing = Drawing(stage, size)
         self.look_from(stage.side)
-        self.driver = Driver(self.renderer, description=stage.words)
-        self.driver.on_page = self._greet
+        self._length = Lengths.of(tree, effectors)
+        colours = [[name, effector_colour(i)] for i, name in enumerate(effectors.names)]
+        self.driver = Driver(self.renderer, description=stage.words, effectors=colours)
+        self.driver.on_page, self.driver.on_act = self._greet, self._perform
+        self.driver.observe(lambda _: self._send(), "measuring")
+        self._acts: dict[str, Callable[[], object]] = {}
         self.driver.as_png = lambda: self.still().png
         self._plan()
         self.note = Note()
@@ -134,6 +139,7 @@ class Scene(Living):
         """
         self.cameras.look_from(side)
         self._drawing.look_from(side)
+        self._side = side
 
     @property
     def dark(self) -> bool:
@@ -162,6 +168,14 @@ class Scene(Living):
         for shown in self._over.values():
             shown.layer.clear()
 
+    def offer(self, acts: Mapping[str, tuple[str, Callable[[], object]]]) -> None:
+        """Have keys at the picture do this: {key: (what it does, action)}.
+
+        "0" puts the camera back to its side, unless it is given.
+        """
+        self._acts = {key: act for key, (_, act) in acts.items()}
+        self.driver.acts = {key: words for key, (words, _) in acts.items() if key != "0"}
+
     def mount(self, *more: widgets.Widget) -> None:
         """Have the page show these widgets under the picture."""
         self.widget.children = [*self.widget.children, *more]
@@ -180,6 +194,11 @@ class Scene(Living):
         """Show the live widget, and beside it a still for places without a kernel."""
         return self.note.beside(self.widget._repr_mimebundle_(**kwargs), self.still())
 
+    def _perform(self, key: str) -> None:
+        """Do what a key at the picture does; a key that does nothing may come late."""
+        usual = {"0": lambda: self.look_from(self._side)}
+        (usual | self._acts).get(key, lambda: None)()
+
     def _greet(self, new: bool) -> None:
         """Show a page that begins to look what was shown last."""
         if new:
@@ -196,7 +215,13 @@ class Scene(Living):
         rows = np.concatenate(frame)
         if not finite(rows):
             rows[np.isnan(rows[:, 0, 3])] = HIDDEN
-        self.driver.show(rows, self._change)
+        self.driver.show(rows, self._change, self._far() if self.driver.measuring else None)
+
+    def _far(self) -> list[str]:
+        """Say how far each effector of the first figure is from its target."""
+        assert self.now is not None
+        gaps = self.now.targets[0] - self.now.effectors[0]
+        return [self._length(float(gap)) for gap in np.linalg.norm(gaps, axis=-1)]
 
     def _drawn(self) -> list[LayerObjects]:
         """List the layers that are drawn, in the order of their rows."""

@@ -66,3 +66,25 @@ export function listen(source, acts) {
     for (const [events, act] of Object.entries(acts)) source.off(events, act);
   };
 }
+
+/**
+ * Call each act on its events of a target.
+ * @param {EventTarget} target
+ * @param {Record<string, (event: any) => void>} acts
+ * @param {AddEventListenerOptions} options
+ */
+export function listenTo(target, acts, options) {
+  for (const [name, act] of Object.entries(acts)) target.addEventListener(name, act, options);
+}
+
+/**
+ * The element, once it is in the page; undefined if it leaves before it came.
+ * @param {Element} el
+ * @param {() => boolean} gone
+ */
+export async function connected(el, gone = () => false) {
+  while (!gone()) {
+    if (el.isConnected) return el;
+    await new Promise(requestAnimationFrame);
+  }
+}

@@ -1,6 +1,8 @@
 // Errors in the page are shown in the cell that they come from.
 
-import { element } from "./dom.js";
+import { connected, element } from "./dom.js";
+import { showWhenRun } from "./inview.js";
+import { makeReachable } from "./reachable.js";
 
 const RUNS = "ikteach-lives"; // says to the page that our scripts run in it: see lacking.py
 
@@ -15,12 +17,30 @@ export function guarded(render) {
   return async (given) => {
     const tell = (/** @type {unknown} */ error) => complain(given.el, error);
     document.body.classList.add(RUNS);
+    let gone = false;
+    connected(given.el, () => gone)
+      .then(settle)
+      .catch(tell);
     try {
-      return await render({ ...given, model: guardedModel(given.model, tell) });
+      const end = await render({ ...given, model: guardedModel(given.model, tell) });
+      return () => {
+        gone = true;
+        end?.();
+      };
     } catch (error) {
       tell(error);
     }
   };
+}
+
+/**
+ * What all of ours need once they are in the page.
+ * @param {Element | undefined} el
+ */
+function settle(el) {
+  if (!el) return;
+  makeReachable(el);
+  showWhenRun(el);
 }
 
 /**

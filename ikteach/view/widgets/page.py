@@ -11,6 +11,7 @@ from pathlib import Path
 from ikteach.markup import Markup
 
 PACKAGE = Path(__file__).parents[2]
+SHARED = ("view/widgets/page.css", "view/widgets/reachable.css")
 COMMENT = re.compile(r"^ *(?:/\*\*[\s\S]*?\*/|//.*)\n", re.MULTILINE)  # on lines of its own
 NAMES = r"\{\s*\w+(?:,\s*\w+)*,?\s*\}"
 IMPORT = re.compile(rf'^import ({NAMES}) from "(\.\.?/[\w./]+\.js)";$', re.MULTILINE)
@@ -37,11 +38,9 @@ def script(path: str) -> str:
 def style(*paths: str) -> str:
     """Read style sheets of the package.
 
-    The one that all widgets share comes first.
+    Those that all widgets share come first.
     """
-    return "".join(
-        (PACKAGE / path).read_text("utf-8") for path in ("view/widgets/page.css", *paths)
-    )
+    return "".join((PACKAGE / path).read_text("utf-8") for path in (*SHARED, *paths))
 
 
 def style_tag(path: str) -> Markup:

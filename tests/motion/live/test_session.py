@@ -140,10 +140,10 @@ def test_changes_are_events_with_their_time(session):
         "method: shown sdls",
         "gait: speed 3.0",
         "gait: motion running",
-        "target: effector hand.l, position [0.1, 0.2, 0.3]",
+        "target: effector hand.l, position (0.1, 0.2, 0.3)",
         "by hand: by_hand False",
         "options: max_step 0.2, limits clip",
-        "solver: method dls, solver {'function': 'dls', 'damping': 0.4}",
+        "solver: method dls, solver (function dls, damping 0.4)",
         "pause",
     ]
     assert {(event.run, event.tick) for event in session.events} == {(0, 2)}
@@ -373,7 +373,7 @@ def test_several_solvers_are_one_change(session):
     for damping in (0.2, 0.3):
         session.use({"dls": partial(dls, damping=damping), "sdls": "dls"})
     assert [str(event) for event in session.events] == [
-        "solver: dls {'function': 'dls', 'damping': 0.3}, sdls dls"
+        "solver: dls (function dls, damping 0.3), sdls dls"
     ]
     session.undo()
     assert session.methods == before
