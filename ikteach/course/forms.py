@@ -229,7 +229,7 @@ def article(name: str) -> str:
 
 
 def same(before: Any, after: Any) -> bool:
-    """Whether an argument is as it was, where this can be told."""
+    """Tell whether an argument is as it was, if possible."""
     if hasattr(before, "equals"):  # a table
         return bool(before.equals(after))
     if isinstance(before, np.ndarray | Sequence) and not isinstance(before, str):
