@@ -102,7 +102,7 @@ def clamp(answer: Answer) -> None:
         about = (
             f"With bound {bound:.4g} entry {i + 1} of φ, {was} of at most {peak:.4g}, became {now}"
         )
-        near = 1e-4 * min(peak, bound)
+        near = max(1e-4 * min(peak, bound), 1e-9 * peak)
         expect(
             abs(done).max() <= bound + near,
             f"{about}, and {right} is right: an entry of φ exceeds the bound.",

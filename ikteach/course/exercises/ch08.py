@@ -21,9 +21,9 @@ def made_up(seed: int) -> pd.DataFrame:
     """A small log with numbers at random, in which the methods' order depends on the seed."""
     rng = np.random.default_rng(seed)
     rows = [
-        {"frame": t, "method": m, "effector": e, "error": rng.exponential(), "jitter": shake}
+        {"frame": t, "method": m, "effector": e, "error": rng.exponential() ** 2, "jitter": shake}
         for m in SOLVERS
-        for t, shake in enumerate(rng.exponential(rng.uniform(0.5, 2), 9))
+        for t, shake in enumerate(rng.exponential(rng.uniform(0.5, 2), 5))
         for e in ("hand", "foot")
     ]
     return pd.DataFrame(rows)
@@ -114,7 +114,7 @@ def experiment(answer: Answer) -> None:
             f"The third must be a function that names the winner of any log, not {winner!r}."
         )
     judge = Answer(winner, "winner", NAME)
-    for seed in range(6):
+    for seed in range(20):
         for how, table, names in variants(seed):
             follows(judge, table, f"a made-up log {how}", names.values())
     log = study.compare(*figures.human(), targets, max_step=max_step)

@@ -31,7 +31,7 @@ def lucky(log):
 WRONG = {
     "08.order": [
         (lambda table, most: calm(table, most)[::-1], "upside down"),
-        (lambda table, most: list(SOLVERS), "The least mean of `error`"),
+        (lambda table, most: list(SOLVERS), "comes first: "),
         (lambda table, most: calm(table, most, how="max"), "The least mean of `error`"),
         (lambda table, most: calm(table, most, how="median"), "The least mean of `error`"),
         (lambda table, most: calm(table, most, by="jitter"), "The least mean of `error`"),
