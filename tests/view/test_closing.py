@@ -114,8 +114,8 @@ PARTS: dict[Any, Callable[[], Any]] = {
 }
 # In notebooks too, but what they give back is no widget.
 NO_WIDGETS = {
-    "bars", "check", "export", "film", "heat", "lines", "order_chart", "phase_plot", "reveal",
-    "source",
+    "Ledger", "bars", "check", "export", "film", "heat", "lines", "order_chart", "phase_plot",
+    "reveal", "source",
 }  # fmt: skip
 
 

@@ -1,5 +1,7 @@
 """Chapter 8's figures: a race of the methods, the runs of an experiment, and their order over λ."""
 
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
 from math import radians
 from typing import Any
 
@@ -32,6 +34,8 @@ from ikteach.view.widgets.table import Rows
 EQUAL, OWN = "equal caps", "each author's caps"
 CAP = (0.5, 180.0)  # from, to [degrees per step]
 CHOSEN = ("motion", "limits", "caps")  # the factors of an experiment that buttons choose
+LEDGER = ("in", "sentence", "compared by", "verdict", "number", "its own settings")
+SIGNS = {"holds": "✓", "does not": "✗", "depends": "≈"}  # of verdicts
 HEADER = ("method", "λ", "mean distance [cm]", "jitter [rad/s²]", "reversals [1/s]")
 
 
@@ -278,6 +282,44 @@ def _measured(cell: pd.DataFrame) -> list[str]:
 
 def _short(value: float) -> str:
     return f"{value:.0f}" if value >= 100 else f"{value:.3g}"
+
+
+@dataclass(frozen=True)
+class Ledger:
+    """Sentences and their verdicts as a page shows them.
+
+    frame  of `thesis.verdicts`
+    """
+
+    frame: pd.DataFrame
+
+    def __str__(self) -> str:
+        return str(self.frame.to_string())
+
+    def _repr_html_(self) -> str:
+        head = Markup('<th scope="col" style="text-align:left">{}</th>')
+        cell = Markup('<td style="text-align:left">{}</td>')
+        rows = map(_ledger_row, self.frame.reset_index().to_dict("records"))
+        nothing = Markup()
+        body = [Markup("<tr>{}</tr>").format(nothing.join(map(cell.format, row))) for row in rows]
+        return Markup(
+            '<table class="ikteach-table"><thead><tr>{}</tr></thead><tbody>{}</tbody></table>'
+        ).format(nothing.join(map(head.format, LEDGER)), nothing.join(body))
+
+
+def _ledger_row(row: Mapping[Hashable, Any]) -> list[object]:
+    """Write a sentence: its verdict with a sign, and what turns it."""
+    turned = f": {row['turned by']}" if row["turned by"] else ""
+    sign = next(sign for word, sign in SIGNS.items() if row["verdict"].startswith(word))
+    verdict = Markup("{} <b>{}</b>, in {} cells{}").format(sign, row["verdict"], row["in"], turned)
+    return [
+        row["section"],
+        row["says"],
+        row["measured by"],
+        verdict,
+        row["number"],
+        row["own settings"],
+    ]
 
 
 def order_chart(
