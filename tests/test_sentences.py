@@ -14,7 +14,7 @@ from ikteach.motion.reach.reaching import Reach, reachable_cursors, trial
 from ikteach.motion.reach.ways import WAYS, Way, advance
 from ikteach.motion.reachable import nearest
 from ikteach.solvers import cramer, dls
-from ikteach.study import experiment, trials
+from ikteach.study import experiment, trials, verdicts
 
 ARM = figures.planar_arm(3)
 HUMAN = figures.human()
@@ -31,19 +31,9 @@ LONG = "x" * 10**6
 
 
 def fair(**others):
-    return trials.trials(*ARM, {"round": Round()}, **{
-        "caps": CAPS, "starts": np.zeros((1, 3)), "rates": (5,), "can_reach": [[True]],
-    } | others)  # fmt: skip
-
-
-class Round:
-    """A motion that is no gait."""
-
-    def __call__(self, times):
-        return experiment.circle(times)
-
-    def at(self, phases):
-        return experiment.circle(phases, turn=2 * np.pi)
+    return trials.trials(*ARM, {"round": experiment.Round()}, **{
+        "caps": CAPS, "starts": np.zeros((1, 3)), "rate": 5, "can_reach": [[True]],
+    } | others).table  # fmt: skip
 
 
 FAIR = fair()
@@ -123,8 +113,14 @@ CALLS = {
     "caps of words": (lambda: fair(caps={"a": "b"}), "a set of caps is {method: cap}"),
     "caps of none": (lambda: fair(caps={"a": {"dsl": 1}}), "no method 'dsl'"),
     "starts": (lambda: fair(starts=np.zeros(3)), r"starts need the shape \(s, 3\), not \(3,\)"),
-    "too short": (lambda: fair(seconds=1), "none is left of 1 s after 1.0 s"),
-    "a rate of words": (lambda: fair(rates=["fast"]), "a rate must be 0 or more"),
+    "too short": (lambda: fair(seconds=1), "none is left of 1 s after 1 s"),
+    "a rate of words": (lambda: fair(rate="fast"), "rate must be 0 or more"),
+    "no limits": (lambda: fair(limits={}), "limits are {name: limit rule}"),
+    "limits of words": (lambda: fair(limits={"a": "hold"}), "'a' must be a function, not 'hold'"),
+    "λ twice": (lambda: fair(dampings=[0.1, 0.1]), "dampings are one λ or more, each once"),
+    "λ below 0": (lambda: fair(dampings=[-1.0]), "λ must be 0 or more"),
+    "no λ": (lambda: fair(dampings=[]), "dampings are one λ or more"),
+    "λ of words": (lambda: fair(dampings="big"), "dampings must be made of numbers"),
     "trials, reach": (lambda: fair(can_reach=[True]), r"can_reach needs the shape \(1, 1\)"),
     "spread of what": (
         lambda: trials.spread(FAIR, ["meen"]),
@@ -132,7 +128,24 @@ CALLS = {
     ),
     "rank what": (lambda: trials.ranking(FAIR, "method"), "'method' is not made of numbers"),
     "rank one": (lambda: trials.ranking(fair(methods="dls"), "mean"), "two methods or more"),
-    "claims": (lambda: trials.claims(FAIR, {}, {}, {}), "the claims are about 'walking'"),
+    "against whom": (
+        lambda: verdicts.against(FAIR, ["dls"], ["sldls"], ["mean"]),
+        "no method 'sldls'; did you mean 'sdls'",
+    ),
+    "against by what": (
+        lambda: verdicts.against(FAIR, ["dls"], ["sdls"], ["meen"]),
+        "no column 'meen'; did you mean 'mean'",
+    ),
+    "within nothing": (lambda: verdicts.against_bound(FAIR, "mean", 0), "by a bound of 0"),
+    "weigh what": (lambda: verdicts.weigh(FAIR), "no column 'ratio'"),
+    "weigh how": (
+        lambda: verdicts.weigh(verdicts.against_bound(FAIR, "mean", 1), "fewer"),
+        "no relation 'fewer'; there are 'less', 'more', 'at most'",
+    ),
+    "weigh nothing": (
+        lambda: verdicts.weigh(verdicts.against_bound(FAIR, "mean", 1)[:0]),
+        "no rows",
+    ),
     "gait of words": (lambda: replace(gait.walking, speed="fast"), "speed of 'walking' is 'fast'"),
     "gait of NaN": (lambda: replace(gait.walking, hand_z=np.nan), "must be a finite number"),
     "gait without a name": (lambda: replace(gait.walking, name=3), "the name of a gait is a text"),

@@ -5,7 +5,11 @@ measures    summaries of logs and runs
 sessions    ticks, poses and events of a live figure
 directions  one step by singular directions (chapter 6)
 reach       the simulator of chapter 10
-experiment  runs made to be compared, and `trials`, the fair experiment (chapter 8)
+experiment  runs made to be compared, starts, counts and times
+trials      the fair experiment of chapter 8
+verdicts    rules by which its table says whether a sentence holds
+evidence    what else the sentences of the thesis are held against
+thesis      these sentences, as data
 """
 
 from ikteach.study.directions import by_direction

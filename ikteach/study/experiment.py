@@ -1,5 +1,8 @@
 """Chapter 8. Runs made to be compared: from many poses at once, at any rate, counted fairly."""
 
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
 from math import radians
 from time import perf_counter
 from typing import Any, NamedTuple
@@ -139,6 +142,26 @@ def circle(
     return np.asarray(centre + radius * way)
 
 
+@dataclass(frozen=True)
+class Round:
+    """One target on a `circle`, as a motion for `trials`.
+
+    centre (3,) and radius [m]; turn, the time of one round [s]
+    """
+
+    centre: Sequence[float] = (2.4, 0.0, 0.0)
+    radius: float = 0.8
+    turn: float = 2.0
+
+    def __call__(self, T: ArrayLike) -> Array:
+        """Find the target at times T (T,) [s], (T, 1, 3) [m]."""
+        return circle(T, centre=self.centre, radius=self.radius, turn=self.turn)
+
+    def at(self, phase: ArrayLike) -> Array:
+        """Find the target at phases (p,) [rad], (p, 1, 3) [m]."""
+        return circle(phase, centre=self.centre, radius=self.radius, turn=2 * np.pi)
+
+
 def iterations(
     tree: Tree,
     effectors: Effectors,
@@ -204,11 +227,26 @@ def step_times(
     if goals.ndim != 3 or not len(goals):
         raise ValueError(f"targets over time have shape (T, k, 3), not {shown(goals.shape)}")
     named = methods_of(methods)
-    seconds: dict[str, list[float]] = {name: [] for name in named}
-    for _ in range(whole_number("rounds", rounds)):
-        for name, solver in named.items():
-            pose, began = tree.rest, perf_counter()
-            for goal in goals:
-                pose = step(tree, pose, effectors, goal, solver, **options).theta
-            seconds[name].append((perf_counter() - began) / len(goals))
-    return {name: float(np.median(times)) for name, times in seconds.items()}
+
+    def steps(solver: Solver) -> None:
+        theta = pose
+        for goal in goals:
+            theta = step(tree, theta, effectors, goal, solver, **options).theta
+
+    each = {name: partial(steps, solver) for name, solver in named.items()}
+    seconds = turns(each, whole_number("rounds", rounds))
+    return {name: float(np.median(times)) / len(goals) for name, times in seconds.items()}
+
+
+def turns(calls: Mapping[Any, Callable[[], Any]], rounds: int = 15) -> dict[Any, Array]:
+    """Time calls that take turns, {name: (rounds,)} [s].
+
+    What else the machine does falls on all alike: compare them round by round.
+    """
+    seconds = {name: np.empty(rounds) for name in calls}
+    for i in range(rounds):
+        for name, call in calls.items():
+            began = perf_counter()
+            call()
+            seconds[name][i] = perf_counter() - began
+    return seconds

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from ikteach.arrays import Array
 from ikteach.body import Effectors
 from ikteach.checks import count, number, shown
 from ikteach.motion import Track
@@ -173,21 +174,23 @@ def variants(run: Track, labels: Iterable[Any], name: str = "variant") -> pd.Dat
     names = list(labels) if isinstance(labels, Iterable) else [labels]
     if of_run(run).theta.ndim != 3 or run.theta.shape[1] != len(names):
         raise ValueError(f"{len(names)} labels do not fit a batch of {run.theta.shape[1:-1]}")
-    rows = [measures(run, (i,)) for i in range(len(names))]
-    return pd.DataFrame(rows, index=pd.Index(names, name=name))
+    return pd.DataFrame(measures(run), index=pd.Index(names, name=name))
 
 
-def measures(run: Track, member: tuple[Any, ...]) -> dict[str, float]:
-    """Measure one member of a batch; () without a batch."""
-    error = run.error[:, *member]
+def measures(run: Track) -> dict[str, Array]:
+    """Measure a run, or each run of a batch: {measure: (...)}.
+
+    Those of `summary`, of all effectors and joints, and `reversals` [1/s].
+    """
+    error = run.error
     return {
-        "mean": error.mean(),
-        "median": np.median(error),
-        "p95": np.quantile(error, 0.95),
-        "max": error.max(),
-        "jitter": run.jitter[:, *member].mean(),
-        "reversals": reversals(run)[member],
-        "capped": run.capped[:, *member].mean(),
-        "held": run.held[:, *member].sum(axis=-1).mean(),
-        "smallest_sigma": run.smallest_sigma[:, *member].min(),
+        "mean": error.mean(axis=(0, -1)),
+        "median": np.median(error, axis=(0, -1)),
+        "p95": np.quantile(error, 0.95, axis=(0, -1)),
+        "max": error.max(axis=(0, -1)),
+        "jitter": run.jitter.mean(axis=0),
+        "reversals": reversals(run),
+        "capped": run.capped.mean(axis=0),
+        "held": run.held.sum(axis=-1).mean(axis=0),
+        "smallest_sigma": run.smallest_sigma.min(axis=0),
     }

@@ -1,108 +1,221 @@
-"""Chapter 8. A fair experiment: every method, from many poses, at several rates; its verdict."""
+"""Chapter 8. A fair experiment: every method in every condition, and what it came to."""
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
-from typing import Any
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from inspect import signature
+from itertools import product
+from types import MappingProxyType
+from typing import Any, Protocol
 
 import numpy as np
 import pandas as pd
 
 from ikteach.arrays import Array, ArrayLike, Mask
 from ikteach.body import Effectors, Tree
-from ikteach.checks import count, number, numbers, shown
-from ikteach.motion import Gait, Track, reachable, track
+from ikteach.checks import count, function, number, numbers, shown
+from ikteach.motion import Track, hold, reachable, track
 from ikteach.motion.methods import Methods, methods_of
+from ikteach.motion.rules import LimitRule
 from ikteach.names import unknown
-from ikteach.solvers import SOLVERS
+from ikteach.solvers import SOLVERS, Solver
 from ikteach.study.measures import columns_of, measures
 from ikteach.study.runs import after
 
 Caps = Mapping[str, float | None]  # a cap per method [rad]; None: no cap
+NO_CAPS: Mapping[str, Caps] = MappingProxyType({"none": {}})
+HOLD: Mapping[str, LimitRule] = MappingProxyType({"hold": hold})
+FACTORS = ["method", "limits", "motion", "caps", "damping", "start"]  # of an experiment
+
+
+class Motion(Protocol):
+    """Targets of time, as a `Gait` gives them."""
+
+    def __call__(self, T: Array, /) -> Array:
+        """Find the targets (T, k, 3) at times (T,) [s]."""
+
+    def at(self, phase: Array, /) -> Array:
+        """Find the targets (p, k, 3) at phases (p,) [rad]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trials:
+    """The runs of an experiment, and their measures.
+
+    table   a row per run
+            method, limits, motion, caps, damping (λ), start   its factors
+            mean, median, p95, max    of the distance to target [m]
+            reach, out_of_reach       its mean over effectors that can reach their targets through
+                                      the whole cycle, and over the others; NaN where there are none
+            jitter, acceleration      mean ‖Δ²θ‖ [rad], and that by the square of a tick [rad/s²]
+            reversals                 of a joint [1/s]
+            capped, held, smallest_sigma   as in `summary`
+    tracks  the runs in the order of the rows, a batch (motions, caps, starts) after the other
+    settle  how long no run was measured [s]
+    """
+
+    table: pd.DataFrame
+    tracks: tuple[Track, ...]
+    settle: float
+
+    def run(self, row: int) -> Track:
+        """Return the run of a row of `table`, all of its frames."""
+        if not 0 <= row < len(self.table):
+            raise IndexError(f"the experiment has rows 0 to {len(self.table) - 1}, not {row}")
+        part, place = divmod(row, len(self.table) // len(self.tracks))
+        batch = self.tracks[part]
+        return member_of(batch, np.unravel_index(place, batch.theta.shape[1:-1]))
+
+    def at_every_damping(self, row: int) -> bool:
+        """Tell whether the run of a row stands at several λ.
+
+        So it is if its method has none.
+        """
+        batch = self.tracks[row // (len(self.table) // len(self.tracks))]
+        return sum(one is batch for one in self.tracks) > 1
+
+    @cached_property
+    def distances(self) -> pd.DataFrame:
+        """The distance [m], a row per run and effector.
+
+        Its mean, p95 and max.
+        """
+        runs = [after(self.run(row), self.settle) for row in range(len(self.table))]
+        error = np.stack([run.error for run in runs])  # (rows, T, k)
+        names = list(runs[0].effectors.names)
+        columns = {"mean": error.mean(axis=1), "p95": np.quantile(error, 0.95, axis=1)}
+        columns |= {"max": error.max(axis=1)}
+        far = pd.DataFrame({name: values.ravel() for name, values in columns.items()})
+        far = far.assign(effector=pd.Categorical(names * len(runs), categories=names))
+        rows = self.table.loc[np.repeat(self.table.index, len(names)), FACTORS]
+        return pd.concat([rows.reset_index(drop=True), far], axis=1)
 
 
 def trials(
     tree: Tree,
     effectors: Effectors,
-    motions: Mapping[str, Gait],
+    motions: Mapping[str, Motion],
     *,
-    caps: Mapping[str, Caps],
     starts: ArrayLike,
-    rates: Iterable[int] = (15, 30, 60),
+    caps: Mapping[str, Caps] = NO_CAPS,
+    limits: Mapping[str, LimitRule] = HOLD,
+    dampings: Iterable[float] = (0.1,),
+    methods: Methods = SOLVERS,
+    rate: float = 30,
     seconds: float = 3.0,
     settle: float = 1.0,
     can_reach: Mask | None = None,
-    methods: Methods = SOLVERS,
-    **options: Any,
-) -> pd.DataFrame:
-    """Run every method on every motion under all caps.
+) -> Trials:
+    """Run every method on every motion in every condition.
 
     motions   {name: gait}, or any function of times (T,) that gives targets (T, k, 3) [m] and has
               them by phase under `at`, as a `Gait` has
-    caps      {name of the set: {method: cap [rad]}}
     starts    (s, n) poses to begin from [rad]
-    rates     frames per second, one step per frame
+    caps      {name of the set: {method: cap [rad]}}
+    limits    {name: limit rule}, such as `hold` and `clip`
+    dampings  λ of each method that has an option `damping` which is not bound [m/rad]; the others
+              run once, and their rows stand at every λ
+    rate      frames per second, one step per frame
     settle    the first seconds of each run, which are left out of all measures
     can_reach (m, k) of `reachable_throughout`, where it is known already
-    options   go to `step`, the same for all
 
-    Returns a row per motion, set of caps, rate, start and method, with the measures of `variants`
-    and the mean distance [m] of the effectors that can `reach` their targets through the whole
-    cycle, and of the others (`out_of_reach`); NaN where there are none.
     ValueError or LookupError says what of this does not fit.
     """
     named, poses = methods_of(methods), _poses(tree, starts)
-    rates = _rates(rates, seconds, settle)
     _check_caps(caps, named)
+    _check_limits(limits)
+    times, lambdas = _times(rate, seconds, settle), _dampings(dampings)
     can_reach = _can_reach(tree, effectors, motions, can_reach)
-    theta = np.broadcast_to(poses, (len(caps), len(motions), *poses.shape))
-    rows: list[dict[str, Any]] = []
-    for rate in rates:
-        times = np.arange(1, round(seconds * rate) + 1) / rate
-        targets = _targets(effectors, motions, times, by_phase=False).swapaxes(0, 1)
-        targets = targets[:, None, :, None]  # (T, caps, motions, starts, k, 3)
-        for method, solver in named.items():
-            cap = _caps(caps, method)
-            run = track(
-                tree, effectors, targets, solver, times=times, theta=theta, max_step=cap, **options
-            )
-            run = replace(after(run, settle), method=method)
-            rows += _rows(run, can_reach, list(motions), list(caps), rate)
-    table = pd.DataFrame(rows)
+    targets = _targets(effectors, motions, times, by_phase=False).swapaxes(0, 1)
+    targets = targets[:, :, None, None]  # (T, motions, caps, starts, k, 3)
+    theta = np.broadcast_to(poses, (len(motions), len(caps), *poses.shape))
+    levels: dict[str, Any] = {"motion": [*motions], "caps": [*caps], "start": range(len(poses))}
+    cells = pd.DataFrame(product(*levels.values()), columns=[*levels])
+    tracks, tables = [], []
+    for (rule, limit), (method, solver) in product(limits.items(), named.items()):
+        cap = _caps(caps, method)
+        follow = partial(track, tree, effectors, targets, times=times, theta=theta, max_step=cap)
+        for bound, at in _at_each(lambdas, solver):
+            run = replace(follow(bound, limits=limit), method=method)
+            measured = _measured(after(run, settle), can_reach, rate)
+            columns = {name: values.ravel() for name, values in measured.items()}
+            for damping in at:
+                tracks.append(run)
+                tables.append(cells.assign(method=method, limits=rule, damping=damping, **columns))
+    table = pd.concat(tables, ignore_index=True)
     table["method"] = pd.Categorical(table["method"], categories=list(named))
-    return table
+    table = table[[*FACTORS, *table.columns.difference(FACTORS, sort=False)]]
+    return Trials(table, tuple(tracks), settle)
 
 
-def _rows(
-    run: Track, can_reach: Mask, motions: list[str], caps: list[str], rate: int
-) -> Iterator[dict[str, Any]]:
-    """Measure each trial of a run of batch (caps, motions, starts)."""
-    for c, m, s in np.ndindex(run.theta.shape[1:-1]):
-        error, reach = run.error[:, c, m, s], can_reach[m]
-        yield {
-            "motion": motions[m],
-            "caps": caps[c],
-            "rate": rate,
-            "start": s,
-            "method": run.method,
-            **measures(run, (c, m, s)),
-            "reach": error[:, reach].mean() if reach.any() else np.nan,
-            "out_of_reach": error[:, ~reach].mean() if not reach.all() else np.nan,
-        }
+def _measured(run: Track, can_reach: Mask, rate: float) -> dict[str, Array]:
+    """Measure a batch (motions, caps, starts) of runs; effectors (m, k) reach or not."""
+    found = measures(run)
+    jitter = found["jitter"]
+    return found | {
+        "acceleration": jitter * rate**2,
+        "reach": _mean_where(run.error, can_reach),
+        "out_of_reach": _mean_where(run.error, ~can_reach),
+    }
 
 
-def _rates(rates: Iterable[int], seconds: float, settle: float) -> list[int]:
-    """Refuse rates at which no frame is left to be measured."""
-    rates = list(rates)
-    for rate in rates:
-        if not number("a rate", rate) * (seconds - settle) >= 1:
-            raise ValueError(
-                f"at {rate} frames per second none is left of {seconds} s after {settle} s"
-            )
-    return rates
+def _mean_where(error: Array, those: Mask) -> Array:
+    """Average distances (T, m, caps, starts, k) over those effectors (m, k); NaN of none."""
+    each, those = error.mean(axis=0), those[:, None, None].astype(float)
+    many = those.sum(axis=-1)
+    return np.divide((each * those).sum(axis=-1), np.where(many, many, np.nan))
+
+
+def member_of(run: Track, member: tuple[Any, ...]) -> Track:
+    """Take one run out of a batch."""
+    batch = run.theta.shape[1:-1]
+    targets = np.broadcast_to(run.targets, (len(run), *batch, *run.targets.shape[-2:]))
+    of: dict[str, Any] = {
+        name: getattr(run, name)[:, *member] for name in ("theta", "error", "capped", "held")
+    }
+    of |= {"targets": targets[:, *member], "start": run.start[member]}
+    return replace(run, **of)
+
+
+def _times(rate: float, seconds: float, settle: float) -> Array:
+    """Find the time of each frame (T,) [s], and refuse that none is left to be measured."""
+    rate, seconds, settle = (
+        number("rate", rate),
+        number("seconds", seconds),
+        number("settle", settle),
+    )
+    if not rate * (seconds - settle) >= 1:
+        raise ValueError(
+            f"at {rate:g} frames per second none is left of {seconds:g} s after {settle:g} s"
+        )
+    return np.arange(1, round(seconds * rate) + 1) / rate
+
+
+def _dampings(dampings: Iterable[float]) -> list[float]:
+    """Check the values of λ."""
+    lambdas = [number("λ", one) for one in np.atleast_1d(numbers("dampings", list(dampings)))]
+    if not lambdas or len(set(lambdas)) < len(lambdas):
+        raise ValueError(f"dampings are one λ or more, each once, not {shown(lambdas)}")
+    return lambdas
+
+
+def _at_each(lambdas: list[float], solver: Solver) -> list[tuple[Solver, list[float]]]:
+    """Bind λ; a solver that has none, or none that is free, stands for all of them."""
+    bound = solver.keywords if isinstance(solver, partial) else {}
+    if "damping" in bound or "damping" not in signature(solver).parameters:
+        return [(solver, lambdas)]
+    return [(partial(solver, damping=one), [one]) for one in lambdas]
+
+
+def _check_limits(limits: Mapping[str, LimitRule]) -> None:
+    if not (isinstance(limits, Mapping) and limits):
+        raise ValueError(f"limits are {{name: limit rule}}, at least one, not {shown(limits)}")
+    for name, rule in limits.items():
+        function(f"the limit rule {shown(name)}", rule)
 
 
 def _can_reach(
-    tree: Tree, effectors: Effectors, motions: Mapping[str, Gait], known: Mask | None
+    tree: Tree, effectors: Effectors, motions: Mapping[str, Motion], known: Mask | None
 ) -> Mask:
     """Find which effectors can reach (m, k), where it is not `known`."""
     if known is None:
@@ -122,9 +235,9 @@ def _poses(tree: Tree, starts: ArrayLike) -> Array:
 
 
 def _caps(caps: Mapping[str, Caps], method: str) -> Array:
-    """Give the cap of a method in each set [rad], (caps, 1, 1)."""
+    """Give the cap of a method in each set [rad], (caps, 1)."""
     chosen = [group.get(method) for group in caps.values()]
-    return np.array([np.inf if cap is None else cap for cap in chosen])[:, None, None]
+    return np.array([np.inf if cap is None else cap for cap in chosen])[:, None]
 
 
 def _check_caps(caps: Mapping[str, Caps], methods: Iterable[str]) -> None:
@@ -138,7 +251,7 @@ def _check_caps(caps: Mapping[str, Caps], methods: Iterable[str]) -> None:
 
 
 def _targets(
-    effectors: Effectors, motions: Mapping[str, Gait], when: Array, *, by_phase: bool
+    effectors: Effectors, motions: Mapping[str, Motion], when: Array, *, by_phase: bool
 ) -> Array:
     """Find the targets (m, T, k, 3) of each motion at times or phases (T,)."""
     if not (isinstance(motions, Mapping) and motions):
@@ -160,7 +273,7 @@ def _targets(
 
 
 def reachable_throughout(
-    tree: Tree, effectors: Effectors, motions: Mapping[str, Gait], phases: int = 8
+    tree: Tree, effectors: Effectors, motions: Mapping[str, Motion], phases: int = 8
 ) -> Mask:
     """Tell which effectors reach their targets in all phases: (m, k)."""
     angles = np.linspace(0, 2 * np.pi, count("phases", phases), endpoint=False)
@@ -170,35 +283,40 @@ def reachable_throughout(
 
 def spread(
     table: pd.DataFrame,
-    measures: Iterable[str] = ("mean", "jitter", "reversals"),
-    by: Iterable[str] = ("caps", "motion", "method"),
+    measures: Iterable[str] = ("mean", "acceleration", "reversals"),
+    by: Iterable[str] = ("limits", "motion", "caps", "damping", "method"),
 ) -> pd.DataFrame:
-    """Average measures of `trials` over starts and rates."""
+    """Summarise measures of `trials` over the starts.
+
+    Three columns each: median, min and max.
+    """
     by, measures = columns_of(table, by), columns_of(table, measures, numeric=True)
-    return table.groupby(by, observed=True)[measures].agg(["mean", "std"])
+    return table.groupby(by, observed=True)[measures].agg(["median", "min", "max"])
 
 
 def ranking(
-    table: pd.DataFrame, measure: str, by: Iterable[str] = ("caps", "motion")
+    table: pd.DataFrame,
+    measure: str,
+    by: Iterable[str] = ("limits", "motion", "caps", "damping"),
 ) -> pd.DataFrame:
     """Rank the methods by a measure of `trials`.
 
-    order   the methods by their mean over starts and rates, the least first
-    wins    in what share of the trials the first has less than the second: 1 is a clear verdict,
+    order   the methods by their median over the starts, the least first
+    wins    in what share of the starts the first has less than the second: 1 is a clear verdict,
             ½ is a toss-up
 
     ValueError unless there are two methods at least.
     """
     by = columns_of(table, by)
     columns_of(table, [measure], numeric=True)
-    columns_of(table, ["motion", "caps", "rate", "start", "method"])
+    columns_of(table, FACTORS)
     if table["method"].nunique() < 2:
         raise ValueError("a ranking needs trials of two methods or more")
+    trial = [name for name in FACTORS if name != "method"]
     rows: dict[Any, dict[str, Any]] = {}
     for key, part in table.groupby(by, observed=True):
-        trial = ["motion", "caps", "rate", "start"]
         wide = part.pivot_table(measure, index=trial, columns="method", observed=True)
-        order = list(wide.mean().sort_values().index)
+        order = list(wide.median().sort_values().index)
         if len(order) < 2:  # nothing was measured, as of `reach` where nothing can be reached
             rows[key] = {"order": " < ".join(order), "first": "", "wins": np.nan}
             continue
@@ -207,72 +325,3 @@ def ranking(
     ranked = pd.DataFrame.from_dict(rows, orient="index")
     ranked.index = pd.MultiIndex.from_tuples(rows, names=by)
     return ranked
-
-
-def claims(
-    table: pd.DataFrame,
-    reach: Mapping[str, Mask],
-    times: Mapping[str, float],
-    arrivals: Mapping[str, float],
-) -> pd.DataFrame:
-    """Hold claims about the methods against the numbers.
-
-    table     of `trials`
-    reach     {motion: (k,)} of `reachable_throughout`, in the thesis's order: feet, then hands
-    times     seconds per step, of `step_times`
-    arrivals  steps until the target, of `iterations`
-    SDLS counts as slower where it takes over a tenth more time than DLS, of which it is a variant.
-    """
-    _check_known(reach, times, arrivals)
-    walk, run = np.asarray(reach["walking"]), np.asarray(reach["running"])
-    total = {name: times[name] * arrivals[name] for name in times}
-    pace, wait = _ratios(times), _ratios(total)
-    last = ranking(table, "jitter")["order"].str.endswith("transpose").mean()
-    firsts = pd.concat(
-        [ranking(table, measure)["first"] == "sdls" for measure in ("mean", "jitter", "reversals")]
-    ).mean()
-    feet, hands = walk[:2].sum(), walk[2:].sum()
-    rows = [
-        ("thesis 5.2", "walking: both feet reach, no hand", "nearest pose"),
-        ("thesis 5.2", "running: none of the four reach", "nearest pose"),
-        ("thesis 5.3", "SDLS is slower", "time per step"),
-        ("thesis 5.3", "SDLS is slower", "time to arrive"),
-        ("thesis 7.1", "SDLS is not slower", "time per step"),
-        ("thesis 7.1", "SDLS is not slower", "time to arrive"),
-        ("often said", "the transpose is the jerkiest", "jitter, last"),
-        ("often said", "SDLS is best in all", "distance, jitter, reversals"),
-    ]
-    table = pd.DataFrame(rows, columns=["source", "says", "measured by"])
-    slower = [ratios["dls"] > 1.1 for ratios in (pace, wait)]
-    holds = [feet == 2 and hands == 0, not run.any(), *slower, *np.logical_not(slower)]
-    table["holds"] = np.array([*holds, last == 1, firsts == 1], dtype=bool)
-    table["numbers"] = [
-        f"{feet} feet, {hands} hands",
-        f"{run.sum()} of {run.size}",
-        *map(_told, [pace, wait, pace, wait]),
-        f"in {last:.0%} of the cases",
-        f"first in {firsts:.0%} of the cases",
-    ]
-    return table
-
-
-def _check_known(
-    reach: Mapping[str, Mask], times: Mapping[str, float], arrivals: Mapping[str, float]
-) -> None:
-    for what, needed, given in (
-        ("motion", ("walking", "running"), reach),
-        ("method", SOLVERS, times),
-        ("method", SOLVERS, arrivals),
-    ):
-        for name in needed:
-            if name not in given:
-                raise LookupError(f"the claims are about {name!r}: {unknown(what, name, given)}")
-
-
-def _ratios(times: Mapping[str, float]) -> dict[str, float]:
-    """How many times as long SDLS takes as each of the others."""
-    return {name: times["sdls"] / seconds for name, seconds in times.items() if name != "sdls"}
-
-
-def _told(ratios: Mapping[str, float]) -> str:
-    return ", ".join(f"{ratio:.1f} × {name}" for name, ratio in ratios.items())

@@ -21,7 +21,9 @@ from ikteach.body.figures import Figure
 from ikteach.course import predict, quiz
 from ikteach.motion.live.session import Session
 from ikteach.motion.reach.planar import PlanarReach
-from ikteach.view.chapters.comparison import Race
+from ikteach.study.experiment import Round
+from ikteach.study.trials import trials
+from ikteach.view.chapters.comparison import Race, TrialsPlayer
 from ikteach.view.chapters.dls import tradeoff_bench
 from ikteach.view.chapters.pseudoinverse import CapPlayer
 from ikteach.view.chapters.sdls import spectrum_bench
@@ -66,6 +68,12 @@ def log() -> Any:
     return session.log()
 
 
+@cache
+def some_trials() -> Any:
+    poses = np.zeros((2, 2))
+    return trials(*arm(), {"round": Round()}, starts=poses, seconds=0.5, settle=0.2)
+
+
 # What is imported by a notebook, exported by `view`, or lives, and how a cell makes one.
 FIGURES: dict[Any, Callable[[], Any]] = {
     ikteach.view.BendBench: ikteach.view.BendBench,
@@ -78,6 +86,7 @@ FIGURES: dict[Any, Callable[[], Any]] = {
     ikteach.view.Workbench: ikteach.view.Workbench,
     CapPlayer: CapPlayer,
     Race: Race,
+    TrialsPlayer: lambda: TrialsPlayer(some_trials()),
     Bench: lambda: Bench(lambda x: Shown(b"", ""), {"x": slider("x", 0, 0, 1, 1)}, slot="own"),
     slope_bench: slope_bench,
     spectrum_bench: spectrum_bench,
@@ -105,7 +114,8 @@ PARTS: dict[Any, Callable[[], Any]] = {
 }
 # In notebooks too, but what they give back is no widget.
 NO_WIDGETS = {
-    "bars", "check", "export", "film", "heat", "lines", "phase_plot", "reveal", "source",
+    "Ledger", "bars", "check", "export", "film", "heat", "lines", "order_chart", "phase_plot",
+    "reveal", "source",
 }  # fmt: skip
 
 

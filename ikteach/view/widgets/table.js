@@ -18,7 +18,7 @@ function render({ model, el }) {
 
   function fill() {
     rows = model.get("rows").map(makeRow);
-    box.replaceChildren(makeTable(model.get("header"), rows));
+    box.replaceChildren(makeTable(model.get("label"), model.get("header"), rows));
     shown = undefined;
     move();
   }
@@ -65,12 +65,13 @@ function follow(model, box) {
 }
 
 /**
+ * @param {string} label
  * @param {string[]} names
  * @param {HTMLElement[]} rows
  */
-function makeTable(names, rows) {
+function makeTable(label, names, rows) {
   const head = names.map((name) => element("th", { scope: "col" }, name));
-  const attributes = { role: "grid", "aria-label": "ticks of the run" };
+  const attributes = { role: "grid", "aria-label": label };
   return element(
     "table",
     attributes,
