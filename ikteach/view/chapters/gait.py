@@ -2,8 +2,6 @@
 
 from typing import Any
 
-import ipywidgets as widgets
-
 from ikteach.markup import Markup
 from ikteach.motion.gait import WOUND, Gait
 from ikteach.motion.live.session import Session
@@ -24,6 +22,7 @@ from ikteach.view.tools.session_panels import (
 )
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import prose
+from ikteach.view.widgets.layout import Arranged
 from ikteach.view.widgets.prose import Prose
 
 
@@ -51,11 +50,11 @@ class GaitPlayer(Live):
         self._first = session.gait
         self.panel = self._make_panel()
         self.controls = self.panel.controls
+        self.arranged = Arranged([self.scene.widget], [self.panel.widget, self._table])
         self.children = [
-            widgets.HBox([self.scene.widget, self.panel.widget]),
+            self.arranged,
             self.status,
             self.strips,
-            self._table,
         ]
         self.report()
 
@@ -91,8 +90,6 @@ class GaitPlayer(Live):
             opened=0,
             shows=lambda: gait_values(session, *groups),
             guard=self.guarded,
-            width="440px",
-            flex="0 1 auto",
         )
 
     def _move(self, name: str) -> None:

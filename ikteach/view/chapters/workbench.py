@@ -23,6 +23,7 @@ from ikteach.view.tools.session_panels import MethodPanel, WoundPanel, gait_pane
 from ikteach.view.tools.view_panels import ONE, ObjectPanel, ViewPanel, scene_of
 from ikteach.view.webgl.targets import Targets
 from ikteach.view.widgets.closing import close_all
+from ikteach.view.widgets.layout import Arranged
 from ikteach.view.widgets.prose import Prose
 
 ROOM = np.array([1.6, 1.8, 1.6])  # [m] how far from the pelvis a target may be put
@@ -65,20 +66,16 @@ class Workbench(Live):
             ],
             titles=[*self.panels, "Recording"],
             selected_index=0,
-            layout={"flex": "1 1 430px", "max_width": "640px", "min_width": "0"},
         )
-        self._stage = widgets.VBox([self.bar.widget, self.scene.widget])
-        self._fit()
         self._table, self._aside = Prose(), widgets.VBox()
+        self._arranged = Arranged(self._stage(), [self._drawer, self._table])
         glass = widgets.Accordion(
             [self.glass], titles=["One iteration under a glass"], selected_index=None
         )
         self.children = [
-            widgets.HBox([self._stage, self._drawer], layout={"flex_flow": "row wrap"}),
+            self._arranged,
             self.status,
-            self._aside,
             self.strips,
-            self._table,
             glass,
         ]
         self.view.straighten()
@@ -222,16 +219,14 @@ class Workbench(Live):
         self.targets = self._targets()
         box = self.panels["Target position"].widget
         box.children = [self.targets, *box.children[1:]]
-        self._stage.children = [self.bar.widget, self.scene.widget]
-        self._fit()
+        self._arranged.seen.children = self._stage()
         old_targets.close()
         old.close()
         self.view.renew()
 
-    def _fit(self) -> None:
-        """Leave the picture its width, so that words under it wrap."""
-        width = self.scene.renderer.width + 4
-        self._stage.layout.flex, self._stage.layout.width = f"0 0 {width}px", f"{width}px"
+    def _stage(self) -> list[widgets.Widget]:
+        """What stands where the figure is: the picture, the clock, and a run looked at."""
+        return [self.scene.widget, self.bar.widget, self._aside]
 
     def _targets(self) -> Targets:
         targets = Targets(

@@ -28,6 +28,7 @@ class Live(Cell):
 
     REPORT_EVERY = 30  # ticks
     SELDOM = 3  # times as rarely come curves and words, where the machine is too slow for all
+    _task: asyncio.Task[None] | None = None
 
     def __init__(
         self, session: Any, scene: Scene, slot: str | None, strips: Strips | None = None
@@ -38,7 +39,6 @@ class Live(Cell):
         self.play_button = play_button()
         self.play_button.observe(self._toggled, "value")
         self._changes = 0
-        self._task: asyncio.Task[None] | None = None
         self.watch(scene)
 
     def watch(self, scene: Scene) -> None:

@@ -8,6 +8,7 @@ import { floats } from "../widgets/binary.js";
 import { element, listen } from "../widgets/dom.js";
 import { complain, guarded } from "../widgets/guarded.js";
 import { resolve } from "../widgets/models.js";
+import { fit } from "./fit.js";
 import { parts, whole } from "./movers.js";
 import { Pictures } from "./pictures.js";
 import { hasWebGL, sceneOf } from "./scene.js";
@@ -30,6 +31,7 @@ export class Driver {
   #reported = -1; // number of the newest frame of which the kernel knows that it was drawn
   #shown = 0;
   #stopDrawn = () => {};
+  #stopFit = () => {};
   #given;
   #model;
   #status;
@@ -56,6 +58,7 @@ export class Driver {
     if (this.#gone || !scene) return;
     this.#scene = scene;
     this.#still.stop();
+    this.#stopFit = fit(scene, this.#status);
     this.#stopDrawn = listen(scene.model, { afterRender: () => this.#drawn() });
     await this.gather();
   }
@@ -64,6 +67,7 @@ export class Driver {
     this.#gone = true;
     this.#still.stop();
     this.#stopDrawn();
+    this.#stopFit();
   }
 
   /** Ask the kernel for the newest frame, in a page that is looked at. */

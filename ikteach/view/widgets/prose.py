@@ -24,8 +24,9 @@ class Prose(Living, widgets.HTML):  # type: ignore[misc]
 
 def table(frame: pd.DataFrame, decimals: str, *, kind: str = "ikteach-table") -> Markup:
     """Write a table as HTML, each number in the format `decimals`."""
-    shown = frame.rename(index=_plain, columns=_plain)
-    return Markup(shown.to_html(float_format=decimals.format, na_rep="–", border=0, classes=kind))
+    shown = frame.rename(index=_plain, columns=_plain).rename_axis(index=None, columns=None)
+    made = shown.to_html(float_format=decimals.format, na_rep="–", border=0, classes=kind)
+    return Markup(made.replace("<th></th>", "<td></td>"))  # a corner is the head of nothing
 
 
 def grid(heads: Sequence[object], rows: Iterable[Sequence[object]], title: str = "") -> Markup:
@@ -45,7 +46,7 @@ def grid(heads: Sequence[object], rows: Iterable[Sequence[object]], title: str =
         '<table class="ikteach-table">{}<thead><tr>{}</tr></thead><tbody>{}</tbody></table>'
     ).format(
         Markup("<caption>{}</caption>").format(title) if title else nothing,
-        nothing.join(map(head.format, heads)),
+        nothing.join(head.format(name) if name else Markup("<td></td>") for name in heads),
         body,
     )
 
