@@ -31,6 +31,7 @@ interface View {
   el: HTMLElement;
   isFrozen: boolean;
   renderer: {
+    domElement: HTMLCanvasElement;
     setPixelRatio(ratio: number): void;
     setSize(width: number, height: number, style: boolean): void;
   };

@@ -133,10 +133,10 @@ def session_words(session: Session) -> str:
         f"{name} {length(d)}"
         for name, d in zip(session.effectors.names, session.error, strict=True)
     )
-    motion = "by hand" if session.by_hand else session.gait.name
     wounded = "wounded, " if session.gait.wound else ""
     who = "human" if isinstance(session.gait, Gait) else "figure"
-    return f"A {who}, {wounded}{motion} by {session.method}. From its target: {far}."
+    does = f"{session.gait.name} by" if not session.by_hand else "moved by hand, solved by"
+    return f"A {who}, {wounded}{does} {session.method}. From its target: {far}."
 
 
 def session_table(session: Session, shown: str | None = None) -> Markup:

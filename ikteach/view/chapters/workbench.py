@@ -130,6 +130,7 @@ class Workbench(Live):
         self.scene.driver.description = self.words
         self._table.value = session_table(self.session, self.session.method)
         self.targets.agree()
+        self.view.agree()  # with a page that became dark
 
     # What a person can do.
 

@@ -54,6 +54,7 @@ class Bench(Cell):
         self._show, self._stale = show, False
         self._waiting: list[Callable[[], None]] = []
         self._picture, self._below = Picture(), Prose()
+        self._picture.add_class("ikteach-chart")
         self._below.add_class("ikteach-below")
         self.buttons = {label: widgets.Button(description=label) for label in buttons}
         for label, act in buttons.items():

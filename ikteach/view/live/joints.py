@@ -97,7 +97,8 @@ class Dial(NamedTuple):
 
     def slider(self, name: str) -> Any:
         """Make a slider for it, with its ends in its label."""
-        label = plain(f"{name} ({self.low:.4g}…{self.high:.4g}{self.unit})")
+        ends = f"{self.low:.4g}…{self.high:.4g}".replace("-", "−")  # as the slider writes numbers
+        label = plain(f"{name} ({ends}{self.unit})")
         digits = f".{digits_of(self.step)}f"
         look = {"width": "auto", "label_width": "175px", "readout_format": digits}
         return slider(label, self.value, self.low, self.high, self.step, **look)

@@ -12,6 +12,7 @@ import { fit } from "./fit.js";
 import { parts, whole } from "./movers.js";
 import { Pictures } from "./pictures.js";
 import { hasWebGL, sceneOf } from "./scene.js";
+import { followTheme } from "./theme.js";
 
 /** @import { Scene } from "./scene.js" */
 
@@ -166,11 +167,13 @@ function render(given) {
     "change:plan": () => driver.gather(),
     "change:description": describe,
   });
+  const stopTheme = followTheme(model);
   document.addEventListener("visibilitychange", hello);
   describe();
   driver.begin().catch((error) => complain(el, error));
   return () => {
     stop();
+    stopTheme();
     driver.end();
     document.removeEventListener("visibilitychange", hello);
   };

@@ -47,6 +47,7 @@ function draw(view, host) {
     if (view.isFrozen || !host.clientWidth) return;
     view.renderer.setPixelRatio(window.devicePixelRatio);
     view.renderer.setSize(host.clientWidth, host.clientHeight, false);
+    Object.assign(view.renderer.domElement.style, { width: "", height: "" }); // of before
   };
   view.updateSize();
   view.tick();
