@@ -44,7 +44,7 @@ def lines(
         for name, part in ((name, table[name].dropna()) for name in table)
         if len(part)
     )
-    return Still(png_of(figure), f"{title}: {ylabel} over {xlabel}. {'; '.join(words)}.")
+    return Still(png_of(figure), f"{title}: {ylabel} over {xlabel}. {'; '.join(words)}.", chart=True)
 
 
 def bars(
@@ -70,7 +70,7 @@ def bars(
         f"{label}: " + ", ".join(f"{name} {value:.3g}" for name, value in row.items())
         for label, (_, row) in zip(labels, table.iterrows(), strict=True)
     )
-    return Still(png_of(figure), f"{title}: {ylabel}. {'; '.join(words)}.")
+    return Still(png_of(figure), f"{title}: {ylabel}. {'; '.join(words)}.", chart=True)
 
 
 def heat(table: pd.DataFrame, *, title: str, unit: str) -> Still:
@@ -94,7 +94,7 @@ def heat(table: pd.DataFrame, *, title: str, unit: str) -> Still:
         f"The largest is {values[row, column]:.2f} {unit}, in row {table.index[row]}, column "
         f"{table.columns[column]}."
     )
-    return Still(png_of(figure), words)
+    return Still(png_of(figure), words, chart=True)
 
 
 def phase_plot(table: pd.DataFrame) -> Still:
@@ -113,7 +113,7 @@ def phase_plot(table: pd.DataFrame) -> Still:
         + ", ".join(f"{name} {error.mean():.3f} m" for name, error in table[method].items())
         for method in methods
     )
-    return Still(png_of(figure), f"Distance to target over the gait cycle. Means: {words}.")
+    return Still(png_of(figure), f"Distance to target over the gait cycle. Means: {words}.", chart=True)
 
 
 def outline(tree: Tree, effectors: Effectors, theta: Array) -> Array:

@@ -1,5 +1,5 @@
 import assert from "node:assert/strict";
-import { beforeEach, test } from "node:test";
+import { afterEach, beforeEach, test } from "node:test";
 import { Driver } from "../../ikteach/view/webgl/driver.js";
 import { Element, Model } from "./page.js";
 
@@ -17,6 +17,8 @@ function frame(number, x) {
   row[9] = x;
   driver.receive({ frame: number, change: 7 }, [new DataView(new Float32Array(row).buffer)]);
 }
+
+afterEach(() => driver.end());
 
 beforeEach(async () => {
   const obj = {

@@ -81,6 +81,10 @@ export class Element {
     return this.children[0];
   }
 
+  closest() {
+    return null;
+  }
+
   addEventListener() {}
   remove() {}
 }
@@ -90,6 +94,11 @@ globalThis.document = {
   createElement: () => new Element(),
   body: { classList: { add() {} } },
   hidden: false,
+};
+
+globalThis.ResizeObserver = class {
+  observe() {}
+  disconnect() {}
 };
 
 /** A point as three.js has it. */

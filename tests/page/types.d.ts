@@ -22,7 +22,21 @@ interface Model extends Source {
   update_controlled(): void;
   widget_manager?: { get_model?(id: string): Promise<Model> | undefined };
   initPromise?: Promise<unknown>;
+  views: Record<string, Promise<View>>;
   obj: any;
+}
+
+/** A view of a pythreejs Renderer. */
+interface View {
+  el: HTMLElement;
+  isFrozen: boolean;
+  renderer: {
+    domElement: HTMLCanvasElement;
+    setPixelRatio(ratio: number): void;
+    setSize(width: number, height: number, style: boolean): void;
+  };
+  updateSize(): void;
+  tick(): void;
 }
 
 /** What anywidget gives `render`, which returns what ends it. */

@@ -27,6 +27,7 @@ from ikteach.view.stage.lengths import Lengths
 from ikteach.view.tools.session_panels import motions, other_motion
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import doors
+from ikteach.view.widgets.layout import Arranged
 from ikteach.view.widgets.picture import Still, png_of
 from ikteach.view.widgets.prose import Prose
 from ikteach.view.widgets.table import Rows
@@ -71,13 +72,11 @@ class Race(Live):
         step, reset = button("Step"), button("Reset")
         step.on_click(self.guarded(lambda _: self.step()))
         reset.on_click(self.guarded(lambda _: session.reset()))
+        clock = widgets.HBox([self.play_button, step, reset])
         self.children = [
-            widgets.HBox([self.play_button, step, reset]),
-            self.panel.widget,
+            Arranged([self.scene.widget, self._table], [clock, self.panel.widget], wide=True),
             self.status,
-            self.scene.widget,
             self.strips,
-            self._table,
         ]
         self._bound()
         self.report()
@@ -126,8 +125,10 @@ class Race(Live):
     def report(self) -> None:
         """Bring words and tables up to date."""
         self.scene.driver.description = self.words
-        whose = Markup("<p>On the left above: the effectors of {}.</p>").format(self.session.method)
-        self._table.value = whose + session_table(self.session)
+        whose = Markup("<p>The curves of each effector are those of {}.</p>").format(
+            self.session.method
+        )
+        self._table.value = session_table(self.session) + whose
 
     def _move(self, motion: str) -> None:
         self.session.gait = other_motion(self.session, motion, self._first)

@@ -2,8 +2,6 @@
 
 from typing import Any
 
-import ipywidgets as widgets
-
 from ikteach.markup import Markup
 from ikteach.motion.gait import WOUND, Gait
 from ikteach.motion.live.session import Session
@@ -24,6 +22,7 @@ from ikteach.view.tools.session_panels import (
 )
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import prose
+from ikteach.view.widgets.layout import Arranged
 from ikteach.view.widgets.prose import Prose
 
 
@@ -53,11 +52,11 @@ class GaitPlayer(Live):
         self.controls = self.panel.controls
         self.choosing = self.controls["method"]
         self.watch(scene)
+        self.arranged = Arranged([self.scene.widget], [self.panel.widget, self._table])
         self.children = [
-            widgets.HBox([self.scene.widget, self.panel.widget]),
+            self.arranged,
             self.status,
             self.strips,
-            self._table,
         ]
         self.report()
 
@@ -93,8 +92,6 @@ class GaitPlayer(Live):
             opened=0,
             shows=lambda: gait_values(session, *groups),
             guard=self.guarded,
-            width="440px",
-            flex="0 1 auto",
         )
 
     def _move(self, name: str) -> None:
@@ -138,11 +135,10 @@ def session_words(session: Session) -> str:
         f"{name} {length(d)}"
         for name, d in zip(session.effectors.names, session.error, strict=True)
     )
-    by = f"by {session.method}"
-    moves = f"{by}, its targets set by hand" if session.by_hand else f"{session.gait.name} {by}"
     wounded = "wounded, " if session.gait.wound else ""
     who = "human" if isinstance(session.gait, Gait) else "figure"
-    return f"A {who}, {wounded}{moves}. From its target: {far}."
+    does = f"{session.gait.name} by" if not session.by_hand else "moved by hand, solved by"
+    return f"A {who}, {wounded}{does} {session.method}. From its target: {far}."
 
 
 def session_table(session: Session, shown: str | None = None) -> Markup:

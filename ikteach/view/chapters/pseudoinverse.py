@@ -57,7 +57,9 @@ class CapPlayer(Cell):
             guard=self.guarded,
         )
         self.controls = panel.controls
-        self.children = [panel.widget, self.status, player]
+        beside = player.arranged.beside
+        beside.children = [panel.widget, *beside.children]
+        self.children = [self.status, player]
 
     @property
     def words(self) -> str:

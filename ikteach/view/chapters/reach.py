@@ -4,7 +4,6 @@ from dataclasses import replace
 from math import degrees, inf, radians
 from typing import Any
 
-import ipywidgets as widgets
 import numpy as np
 import pandas as pd
 
@@ -23,6 +22,7 @@ from ikteach.view.webgl import objects
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.webgl.targets import Targets
 from ikteach.view.widgets import doors
+from ikteach.view.widgets.layout import Arranged
 from ikteach.view.widgets.prose import Prose, table
 
 WHITE = "#ffffff"
@@ -99,11 +99,8 @@ class Simulator(Live):
         self.controls = self.panel.controls
         self.choosing = self.controls["method"]
         self.watch(self.scene)
-        self.scene.widget.layout = widgets.Layout(flex="0 0 auto", width="552px")
-        beside = widgets.HBox(
-            [self.scene.widget, self.panel.widget], layout=widgets.Layout(flex_flow="row wrap")
-        )
-        self.children = [beside, self.targets, self.status, self._table]
+        beside = [self.panel.widget, self.targets, self._table]
+        self.children = [Arranged([self.scene.widget], beside), self.status]
         self.report()
 
     @property
@@ -149,8 +146,6 @@ class Simulator(Live):
                 {"view": Does(dropdown("View", sides), self.scene.look_from)},
             ],
             guard=self.guarded,
-            flex="1 1 400px",
-            min_width="360px",
         )
 
     def _put(self, place: Array) -> None:

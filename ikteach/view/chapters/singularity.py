@@ -22,7 +22,7 @@ SIZE = 0.1  # ‖e‖ [m]
 class BendBench(Bench):
     """A two-link arm with its ellipsoid.
 
-    Sliders bend it and turn an error of 10 cm round it. Under it: its singular values, and the
+    Sliders bend it and turn an error of 10 cm round it. Beside it: its singular values, and the
     length of the step that each method would take.
     """
 
@@ -61,20 +61,20 @@ class SingularityPlot:
     """Bars of singular values and of each method's step."""
 
     def __init__(self) -> None:
-        figure = Figure(figsize=(9.6, 2.3), dpi=90)
-        left, right = figure.subplots(1, 2)
-        figure.subplots_adjust(left=0.06, right=0.985, bottom=0.22, top=0.87, wspace=0.3)
-        left.set(title="singular values [m/rad]", xlim=(0, 2.5))
-        self._sigma = left.barh([1, 0], [1, 1], color=[PURPLE, SKY], hatch="//", edgecolor="white")
-        left.set_yticks([1, 0], ["σ₁", "σ₂"])
-        right.set(title="length of the step ‖Δθ‖ [rad]", xscale="log", xlim=(LEAST, 1e3))
-        right.axvline(np.pi, color="0.4", ls=":")
+        figure = Figure(figsize=(5.0, 3.1), dpi=90)  # beside the arm
+        above, below = figure.subplots(2, 1, height_ratios=[1, 1.9])
+        figure.subplots_adjust(left=0.25, right=0.97, bottom=0.09, top=0.92, hspace=0.75)
+        above.set(title="singular values [m/rad]", xlim=(0, 2.5))
+        self._sigma = above.barh([1, 0], [1, 1], color=[PURPLE, SKY], hatch="//", edgecolor="white")
+        above.set_yticks([1, 0], ["σ₁", "σ₂"])
+        below.set(title="length of the step ‖Δθ‖ [rad]", xscale="log", xlim=(LEAST, 1e3))
+        below.axvline(np.pi, color="0.4", ls=":")
         at = range(len(SOLVERS))
         colours = list(map(effector_colour, at))
-        self._steps = right.barh(at, [1.0] * len(SOLVERS), color=colours, edgecolor="white")
-        right.set_yticks(at, list(SOLVERS))
-        right.invert_yaxis()
-        for axes in left, right:
+        self._steps = below.barh(at, [1.0] * len(SOLVERS), color=colours, edgecolor="white")
+        below.set_yticks(at, list(SOLVERS))
+        below.invert_yaxis()
+        for axes in above, below:
             axes.grid(alpha=0.3, axis="x")
             axes.set_axisbelow(True)
         self._canvas = Canvas(figure, [*self._sigma, *self._steps])

@@ -23,6 +23,7 @@ from ikteach.view.tools.session_panels import MethodPanel, WoundPanel, gait_pane
 from ikteach.view.tools.view_panels import GHOST, ONE, ObjectPanel, ViewPanel, scene_of
 from ikteach.view.webgl.targets import Targets
 from ikteach.view.widgets.closing import close_all
+from ikteach.view.widgets.layout import Arranged
 from ikteach.view.widgets.prose import Prose
 
 ROOM = np.array([1.6, 1.8, 1.6])  # [m] how far from the pelvis a target may be put
@@ -68,16 +69,13 @@ class Workbench(Live):
             ],
             titles=[*self.panels, "Recording", "One iteration under a glass"],
             selected_index=0,
-            layout={"flex": "1 1 430px", "max_width": "640px", "min_width": "0"},
         )
         self._table, self._aside = Prose(), widgets.VBox()
-        self._stage = widgets.VBox([self.bar.widget, self.scene.widget, self._aside])
-        self._fit()
+        self._arranged = Arranged(self._stage(), [self._drawer, self._table])
         self.children = [
-            widgets.HBox([self._stage, self._drawer], layout={"flex_flow": "row wrap"}),
+            self._arranged,
             self.status,
             self.strips,
-            self._table,
         ]
         self.view.straighten()
         self._agree()
@@ -134,6 +132,7 @@ class Workbench(Live):
         self.scene.driver.description = self.words
         self._table.value = session_table(self.session, self.session.method)
         self.targets.agree()
+        self.view.agree()  # with a page that became dark
 
     # What a person can do.
 
@@ -243,16 +242,14 @@ class Workbench(Live):
         self.targets = self._targets()
         box = self.panels["Target position"].widget
         box.children = [self.targets, *box.children[1:]]
-        self._stage.children = [self.bar.widget, self.scene.widget, self._aside]
-        self._fit()
+        self._arranged.seen.children = self._stage()
         old_targets.close()
         old.close()
         self.view.renew()
 
-    def _fit(self) -> None:
-        """Leave the picture its width, so that words under it wrap."""
-        width = self.scene.renderer.width + 4
-        self._stage.layout.flex, self._stage.layout.width = f"0 0 {width}px", f"{width}px"
+    def _stage(self) -> list[widgets.Widget]:
+        """What stands where the figure is: the picture, the clock, and a run looked at."""
+        return [self.scene.widget, self.bar.widget, self._aside]
 
     def _targets(self) -> Targets:
         targets = Targets(

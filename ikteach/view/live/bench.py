@@ -10,6 +10,7 @@ from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import doors
 from ikteach.view.widgets.cell import Cell
 from ikteach.view.widgets.lacking import Note
+from ikteach.view.widgets.layout import Arranged
 from ikteach.view.widgets.picture import Picture, Still
 from ikteach.view.widgets.prose import Prose
 
@@ -29,7 +30,7 @@ class Bench(Cell):
 
     controls  {name: widget with a value}
     buttons   {label: its action}; then the picture is made anew
-    scene     a live scene that `show` moves, above the picture
+    scene     a live scene that `show` moves; the picture is then a chart beside it
     panel     the controls as they are laid out; one under the other, if not given
 
     The status tells of errors in `show` or in a button, and the bench stays. A subclass gives its
@@ -53,6 +54,8 @@ class Bench(Cell):
         self._show, self._stale = show, False
         self._waiting: list[Callable[[], None]] = []
         self._picture, self._below = Picture(), Prose()
+        self._picture.add_class("ikteach-chart")
+        self._below.add_class("ikteach-below")
         self.buttons = {label: widgets.Button(description=label) for label in buttons}
         for label, act in buttons.items():
             self.buttons[label].on_click(lambda _, act=act: self._after(act))
@@ -108,17 +111,16 @@ class Bench(Cell):
             self._after(None)
 
     def _laid_out(self, rows: list[widgets.Widget]) -> list[widgets.Widget]:
-        """All parts: the controls above the picture, or beside the scene."""
-        scene = self.scene
+        """All parts: the picture or the scene first, a chart beside the scene."""
+        scene, below = self.scene, self._below
         if scene is None:
             assert self.note is not None
-            return [*rows, self.status, self._picture, self.note.widget, self._below]
+            seen = [self._picture, self.note.widget]
+            return [Arranged(seen, [*rows, below], chart=True), self.status]
         scene.driver.on_page = self._seen
-        scene.widget.layout.width = f"{scene.renderer.width}px"  # so that the panel has its place
-        column = widgets.VBox(rows, layout=widgets.Layout(flex="1 1 380px", min_width="340px"))
-        beside = widgets.HBox([scene.widget, column], layout=widgets.Layout(flex_flow="row wrap"))
+        scene.widget.add_class("ikteach-told")  # what its words say, `below` shows
         chart = [self._picture] if self._picture.png else []
-        return [beside, self.status, *chart, self._below]
+        return [Arranged([scene.widget], [*rows, *chart, below]), self.status]
 
 
 def _control(name: str, value: Any) -> None:

@@ -35,6 +35,7 @@ class Live(Cell):
     REPORT_EVERY = 30  # ticks
     SELDOM = 3  # times as rarely come curves and words, where the machine is too slow for all
     choosing: Any = None
+    _task: asyncio.Task[None] | None = None
 
     def __init__(
         self, session: Any, scene: Scene, slot: str | None, strips: Strips | None = None
@@ -45,7 +46,6 @@ class Live(Cell):
         self.play_button = play_button()
         self.play_button.observe(self._toggled, "value")
         self._changes, self._slow, self._rested = 0, 0, False
-        self._task: asyncio.Task[None] | None = None
         self.watch(scene)
 
     def watch(self, scene: Scene) -> None:

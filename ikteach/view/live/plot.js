@@ -1,14 +1,15 @@
 // A plot on a canvas: the last seconds to the right, values on a logarithmic axis upward.
 
-export const WIDTH = 420; // [pixels], as the height
-export const HEIGHT = 170;
-const MARGIN = { left: 44, top: 22, right: 8, bottom: 20 };
+const HEIGHT = 160; // [pixels]
+const MARGIN = { top: 22, right: 8, bottom: 20 };
 
 export class Plot {
   #pen;
   #panel;
   #first;
   #seconds;
+  #width = 420; // [pixels] of the page; it has letters of one size, however wide it is
+  #left = 44; // of the axis: as the widest of its numbers needs
 
   /**
    * @param {HTMLCanvasElement} canvas
@@ -23,14 +24,29 @@ export class Plot {
     this.#seconds = seconds;
   }
 
+  /**
+   * Take another width, in as many pixels as the screen has for it.
+   * @param {number} width
+   */
+  resize(width) {
+    const { canvas } = this.#pen;
+    const fine = window.devicePixelRatio;
+    this.#width = width;
+    canvas.width = Math.round(width * fine);
+    canvas.height = Math.round(HEIGHT * fine);
+    this.#pen.scale(fine, fine);
+  }
+
   /** @param {Float32Array[]} samples rows: the time [s] and the values, the oldest first */
   draw(samples) {
     const pen = this.#pen;
-    pen.clearRect(0, 0, WIDTH, HEIGHT);
+    pen.clearRect(0, 0, this.#width, HEIGHT);
     pen.setLineDash([]);
     pen.lineWidth = 1;
     pen.fillStyle = pen.strokeStyle = getComputedStyle(pen.canvas).color;
     pen.font = "12px sans-serif";
+    const widths = powers(this.#panel.range).map((value) => pen.measureText(written(value)).width);
+    this.#left = Math.max(...widths) + 6;
     const now = samples.length ? samples[samples.length - 1][0] : 0;
     this.#grid(now);
     this.#labels();
@@ -40,7 +56,7 @@ export class Plot {
   /** @param {number} now [s] */
   #grid(now) {
     this.#pen.globalAlpha = 0.25;
-    const [left, right] = [MARGIN.left, WIDTH - MARGIN.right];
+    const [left, right] = [this.#left, this.#width - MARGIN.right];
     const [top, bottom] = [MARGIN.top, HEIGHT - MARGIN.bottom];
     for (const value of powers(this.#panel.range))
       this.#rule(left, this.#y(value), right, this.#y(value));
@@ -55,15 +71,12 @@ export class Plot {
     const pen = this.#pen;
     const { title, unit, range } = this.#panel;
     pen.textAlign = "left";
-    pen.fillText(`${title} [${unit}]`, MARGIN.left, 14);
-    pen.fillText(`−${this.#seconds} s`, MARGIN.left, HEIGHT - 5);
+    pen.fillText(`${title} [${unit}]`, this.#left, 14);
+    pen.fillText(`−${this.#seconds} s`, this.#left, HEIGHT - 5);
     pen.textAlign = "right";
-    pen.fillText("now", WIDTH - MARGIN.right, HEIGHT - 5);
-    for (const value of powers(range)) {
-      const power = Math.round(Math.log10(value));
-      const words = Math.abs(power) < 5 ? `${value}` : `1e${power}`;
-      pen.fillText(words, MARGIN.left - 4, this.#y(value) + 4);
-    }
+    pen.fillText("now", this.#width - MARGIN.right, HEIGHT - 5);
+    for (const value of powers(range))
+      pen.fillText(written(value), this.#left - 4, this.#y(value) + 4);
   }
 
   /**
@@ -88,7 +101,7 @@ export class Plot {
    */
   #x(time, now) {
     const share = 1 - (now - time) / this.#seconds;
-    return MARGIN.left + share * (WIDTH - MARGIN.left - MARGIN.right);
+    return this.#left + share * (this.#width - this.#left - MARGIN.right);
   }
 
   /** @param {number} value */
@@ -112,6 +125,15 @@ export class Plot {
     this.#pen.lineTo(x2, y2);
     this.#pen.stroke();
   }
+}
+
+/**
+ * A power of ten in few letters.
+ * @param {number} value
+ */
+function written(value) {
+  const power = Math.round(Math.log10(value));
+  return Math.abs(power) < 5 ? `${value}` : `1e${power}`;
 }
 
 /**

@@ -4,7 +4,7 @@
 import { floats } from "../widgets/binary.js";
 import { element, listen, svg } from "../widgets/dom.js";
 import { guarded } from "../widgets/guarded.js";
-import { HEIGHT, Plot, WIDTH } from "./plot.js";
+import { Plot } from "./plot.js";
 
 /** @type {Render} */
 function render({ model, el }) {
@@ -14,7 +14,7 @@ function render({ model, el }) {
   let width = 1; // of a row
   /** @type {Plot[]} */
   const plots = model.get("panels").map((/** @type {Panel} */ panel) => {
-    const canvas = element("canvas", { width: WIDTH, height: HEIGHT });
+    const canvas = element("canvas");
     root.append(element("div", {}, canvas, legend(panel.lines)));
     const plot = new Plot(canvas, panel, width, seconds);
     width += panel.lines.length;
@@ -42,7 +42,30 @@ function render({ model, el }) {
   const describe = () => root.setAttribute("aria-label", model.get("alt"));
   describe();
   draw();
-  return listen(model, { "msg:custom": receive, "change:alt": describe });
+  const stops = [
+    listen(model, { "msg:custom": receive, "change:alt": describe }),
+    fitted(root, plots, draw),
+  ];
+  return () => {
+    for (const stop of stops) stop();
+  };
+}
+
+/**
+ * Have plots as wide as the page has room for; call the answer to stop that.
+ * @param {HTMLElement} root
+ * @param {Plot[]} plots
+ * @param {() => void} draw
+ */
+function fitted(root, plots, draw) {
+  const observer = new ResizeObserver(([{ target }]) => {
+    if (!target.clientWidth) return;
+    for (const plot of plots) plot.resize(target.clientWidth);
+    draw();
+  });
+  const first = root.querySelector("canvas"); // all are equally wide
+  if (first) observer.observe(first);
+  return () => observer.disconnect();
 }
 
 /**

@@ -242,9 +242,9 @@ class Stage:
         It is over it, under it, or in a list.
         """
         if self.overlaid:
-            x, y = -0.75, 0.65 - 0.16 * f
+            x, y = -1.0, 0.85 - 0.16 * f
         else:  # where the figure is not, at rest
-            x, y = 0.0, 0.8 if self.human else -1.1 if self._stands else 1.1
+            x, y = 0.0, 0.88 if self.human else -1.1 if self._stands else 1.1
         return self.extent.centre + self.unit * np.array([x, y, 0.0])
 
     def now(self, theta: Array, targets: Array, **about: Unpack[About]) -> Now:

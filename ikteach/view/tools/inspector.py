@@ -54,6 +54,7 @@ class Glass(Cell):
         )
         self.method.observe(self.guarded(lambda _: self._again()), "value")
         self.picture, self.table = Picture(), Prose()
+        self.picture.add_class("ikteach-chart")
         self.children = [
             widgets.HBox([self.look_button, self.method, self.do]),
             widgets.HBox([self.back, self.next]),

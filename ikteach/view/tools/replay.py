@@ -53,6 +53,8 @@ class Replay(Cell):
     the table (up and down) all mean the same tick, `at`.
     """
 
+    _task: asyncio.Task[None] | None = None
+
     def __init__(
         self, run: Log, scene: Shows | None = None, *, slot: str | None = "replay"
     ) -> None:
@@ -65,7 +67,6 @@ class Replay(Cell):
         self.run, self.at, self._wanted = run, 0, 0
         sketch = Sketch(run.tree, run.effectors) if scene is None else None
         self.scene: Any = sketch or scene
-        self._task: asyncio.Task[None] | None = None
         wide = widgets.Layout(width="100%", max_width="720px")
         self.playing = widgets.ToggleButton(value=False, description="Play")
         self.slider = widgets.IntSlider(

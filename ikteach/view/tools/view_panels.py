@@ -52,6 +52,7 @@ class ViewPanel(Panel):
         set_figures: Callable[[str], object],
     ) -> None:
         self.live, self._turned, self._set_figures = live, turned, set_figures
+        self._dark_chosen = False
         names = list(live.session.effectors.names)
         layers = {
             f"layer.{name}": Does(
@@ -74,6 +75,7 @@ class ViewPanel(Panel):
                 {"effector": dropdown("J and ellipsoid of", names, **LABEL)},
                 {"dark": Does(tick_box("dark"), self._darken)},
             ],
+            shows=lambda: {"dark": live.scene.dark},
             guard=guard,
         )
 
@@ -92,7 +94,8 @@ class ViewPanel(Panel):
         for name, on in values.items():
             if name.startswith("layer."):
                 self._switch(name.removeprefix("layer."), on)
-        self._darken(values["dark"])
+        if self._dark_chosen:
+            self._darken(values["dark"])
         self._project(values["projection"])
         self.straighten()
 
@@ -129,6 +132,7 @@ class ViewPanel(Panel):
         self.live.scene.cameras.orthographic = how == "orthographic"
 
     def _darken(self, on: bool) -> None:
+        self._dark_chosen = True
         self.live.scene.dark = on
 
 

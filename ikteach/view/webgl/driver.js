@@ -9,10 +9,12 @@ import { element, listen } from "../widgets/dom.js";
 import { complain, guarded } from "../widgets/guarded.js";
 import { resolve } from "../widgets/models.js";
 import { Far } from "./far.js";
+import { fit } from "./fit.js";
 import { Looking } from "./looking.js";
 import { parts, whole } from "./movers.js";
 import { Pictures } from "./pictures.js";
 import { hasWebGL, sceneOf, stageOf } from "./scene.js";
+import { followTheme } from "./theme.js";
 
 /** @import { Scene } from "./scene.js" */
 
@@ -35,6 +37,7 @@ export class Driver {
   #reported = -1; // number of the newest frame of which the kernel knows that it was drawn
   #shown = 0;
   #stopDrawn = () => {};
+  #stopFit = () => {};
   #given;
   #model;
   #status;
@@ -64,6 +67,7 @@ export class Driver {
     if (this.#gone || !scene) return;
     this.#scene = scene;
     this.#still.stop();
+    this.#stopFit = fit(scene, this.#status);
     this.#stopDrawn = listen(scene.model, { afterRender: () => this.#drawn() });
     this.#look(scene).catch((error) => complain(this.#given.el, error));
     await this.gather();
@@ -81,6 +85,7 @@ export class Driver {
     this.#looking?.end();
     this.#still.stop();
     this.#stopDrawn();
+    this.#stopFit();
   }
 
   /** Ask the kernel for the newest frame, in a page that is looked at. */
@@ -182,11 +187,13 @@ function render(given) {
     "change:plan": () => driver.gather(),
     "change:description": describe,
   });
+  const stopTheme = followTheme(model);
   document.addEventListener("visibilitychange", hello);
   describe();
   driver.begin().catch((error) => complain(el, error));
   return () => {
     stop();
+    stopTheme();
     driver.end();
     document.removeEventListener("visibilitychange", hello);
   };

@@ -30,6 +30,7 @@ class Driver(Living, anywidget.AnyWidget):
     nodes, plan   the objects that it moves, and how (`Move`); set them with `move`
     rows          number of rows of a frame
     description   the picture in words, for people who cannot see it
+    dark          whether the page is dark, as it says itself
     on_page       is called with True when a page begins to look and with False when it has
                   drawn, from whichever thread hears of it
     as_png        draws the last moment, for a page that lacks pythreejs or WebGL
@@ -56,6 +57,7 @@ class Driver(Living, anywidget.AnyWidget):
     measures = traitlets.Bool(False).tag(sync=True)
     measuring = traitlets.Bool(False).tag(sync=True)
     effectors: Any = traitlets.List().tag(sync=True)
+    dark = traitlets.Bool(False).tag(sync=True)
     lacking = traitlets.Dict(LACKING, read_only=True).tag(sync=True)
 
     def __init__(self, renderer: Widget, **kwargs: Any) -> None:

@@ -76,7 +76,8 @@ def labels(labels: Sequence[Label]) -> list[three.Sprite]:
     @cache
     def look(text: str, colour: str) -> three.SpriteMaterial:
         words = three.TextTexture(string=text, color=colour, size=64)  # as wide as it is high
-        return three.SpriteMaterial(map=words, transparent=True, depthWrite=False)
+        # Words are seen through a body that stands before them.
+        return three.SpriteMaterial(map=words, transparent=True, depthTest=False, depthWrite=False)
 
     sprites = []
     for at, text, colour, height in labels:

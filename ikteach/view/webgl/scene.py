@@ -40,7 +40,7 @@ class Scene(Living):
     names    one figure for each, with its name over its head (a lone figure needs none)
     apart    how far they stand from each other [m]; 0 lays them over each other, in which case
              they share the targets, and all but the first can be seen through
-    dark     light on dark, or dark on light
+    dark     light on dark, or dark on light; as the page is, if nobody has set it
     slot     only one of a slot lives at a time: to run a cell again closes the older one. Name it
              for a second scene in a notebook
 
@@ -72,7 +72,7 @@ class Scene(Living):
         self._over: dict[str, LayerObjects] = {}
         self._groups: dict[str, three.Group] = {}
         self._on: set[str] = set()
-        self._dark = dark
+        self._dark, self._chosen = dark, dark
         (self.targets,) = (one.things for one in self._basics if isinstance(one.layer, TargetMarks))
         self._furnish(size)
         self._drawing = Drawing(stage, size)
@@ -82,6 +82,7 @@ class Scene(Living):
         self.driver = Driver(self.renderer, description=stage.words, effectors=colours)
         self.driver.on_page, self.driver.on_act = self._greet, self._perform
         self.driver.observe(lambda _: self._send(), "measuring")
+        self.driver.observe(lambda page: self._chosen or self._paint(page["new"]), "dark")
         self._acts: dict[str, Callable[[], object]] = {}
         self.driver.as_png = lambda: self.still().png
         self._plan()
@@ -148,6 +149,10 @@ class Scene(Living):
 
     @dark.setter
     def dark(self, on: bool) -> None:
+        self._chosen = True
+        self._paint(on)
+
+    def _paint(self, on: bool) -> None:
         if on != self._dark:
             self._dark = on
             self.scene.background = paper(on).back

@@ -27,9 +27,10 @@ class Cell(Living, widgets.VBox):  # type: ignore[misc]
     """
 
     def __init__(self, slot: str | None, note: Note | None = None) -> None:
+        self._act = Actor()  # first, so that one that fails half made can be ended
         super().__init__()
+        self.add_class("ikteach-figure")
         self.slot, self.note, self.status = slot, note, Status()
-        self._act = Actor()
 
     def still(self) -> Still | None:
         """Draw it for a place without a kernel.

@@ -17,7 +17,7 @@ const STEPS = {
 
 /** @type {Render} */
 function render({ model, el }) {
-  const image = element("img", { draggable: "false" });
+  const image = element("img", { class: "ikteach-chart", draggable: "false" });
   const line = element("div");
   const box = makeBox(image, line);
   el.append(box);

@@ -31,16 +31,19 @@ class Still:
     """A PNG with its text alternative, for a cell's output.
 
     It needs no kernel to be seen.
+
+    chart  it is on white paper, and is turned dark in a dark page
     """
 
     png: bytes = field(repr=False)
     alt: str
+    chart: bool = field(default=False, repr=False)
 
     def _repr_html_(self) -> str:
         data = base64.b64encode(self.png).decode()
         return Markup(
-            '<img alt="{}" style="max-width:100%" src="data:image/png;base64,{}">'
-        ).format(self.alt, data)
+            '<img alt="{}" class="{}" style="max-width:100%" src="data:image/png;base64,{}">'
+        ).format(self.alt, "ikteach-chart" if self.chart else "", data)
 
 
 def png_of(figure: Figure) -> bytes:

@@ -24,9 +24,9 @@ class Prose(Living, widgets.HTML):  # type: ignore[misc]
 
 def table(frame: pd.DataFrame, decimals: str, *, kind: str = "ikteach-table") -> Markup:
     """Write a table as HTML, each number in the format `decimals`."""
-    shown = frame.rename(index=_plain, columns=_plain)
-    html = shown.to_html(float_format=decimals.format, na_rep="–", border=0, classes=kind)
-    return Markup(html.replace("<th></th>", "<td></td>"))  # a heading has words
+    shown = frame.rename(index=_plain, columns=_plain).rename_axis(index=None, columns=None)
+    made = shown.to_html(float_format=decimals.format, na_rep="–", border=0, classes=kind)
+    return Markup(made.replace("<th></th>", "<td></td>"))  # a corner is the head of nothing
 
 
 def grid(heads: Sequence[object], rows: Iterable[Sequence[object]], title: str = "") -> Markup:
@@ -46,7 +46,7 @@ def grid(heads: Sequence[object], rows: Iterable[Sequence[object]], title: str =
         '<table class="ikteach-table">{}<thead><tr>{}</tr></thead><tbody>{}</tbody></table>'
     ).format(
         Markup("<caption>{}</caption>").format(title) if title else nothing,
-        nothing.join(head.format(words) if words else cell.format("") for words in heads),
+        nothing.join(head.format(name) if name else Markup("<td></td>") for name in heads),
         body,
     )
 

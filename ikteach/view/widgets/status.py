@@ -10,7 +10,10 @@ from ikteach.view.widgets.page import script, style
 class Status(Living, anywidget.AnyWidget):
     """A sentence on progress, and one on the last error."""
 
-    _esm, _css = script("view/widgets/status.js"), style("view/widgets/status.css")
+    _esm, _css = (
+        script("view/widgets/status.js"),
+        style("view/widgets/status.css", "view/widgets/layout.css"),
+    )
     said = traitlets.Unicode("").tag(sync=True)
     wrong = traitlets.Unicode("").tag(sync=True)
     came = traitlets.Int(0).tag(sync=True)
