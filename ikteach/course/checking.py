@@ -18,7 +18,6 @@ import dis
 import importlib
 import linecache
 import re
-import sys
 import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -42,7 +41,7 @@ from ikteach.course.forms import (
 )
 from ikteach.course.kept import Kept, kept
 from ikteach.course.notice import LOOK, Mood, box, paragraph
-from ikteach.course.untouched import Unpatched, restoring
+from ikteach.course.untouched import Unpatched, ipython, restoring
 from ikteach.files import bounded
 from ikteach.markup import Markup
 from ikteach.names import unknown
@@ -176,7 +175,7 @@ def check(key: str, answer: Any, *, strict: bool = False) -> Verdict:
     verdict.sentence = f"{verdict.sentence} {trouble}".strip()
     if strict and not verdict.passed:
         raise AssertionError(str(verdict))
-    if not _shown_by_a_cell():
+    if ipython() is None:  # no cell shows it
         verdict.tell()
     return verdict
 
@@ -193,12 +192,6 @@ def _hint(
         seen.append(written.mark)
     level = min(len(seen), len(task.hints))
     return f"Hint {level} of {len(task.hints)}: {task.hints[level - 1]}", seen
-
-
-def _shown_by_a_cell() -> bool:
-    """Whether this runs in a notebook, or in IPython."""
-    ipython = sys.modules.get("IPython")
-    return ipython is not None and ipython.get_ipython() is not None
 
 
 def find(key: str) -> Exercise:

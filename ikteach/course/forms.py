@@ -5,6 +5,7 @@ name as a text or as the function of that name. A checker sees an array or a tex
 form is a WrongError with a sentence.
 """
 
+import inspect
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from itertools import islice
@@ -145,6 +146,8 @@ def _single(value: Any) -> Any:
 
 def listed(value: Any) -> Any:
     """Make a list of what can be gone through but once."""
+    if inspect.iscoroutine(value):
+        value.close()  # nobody waits for it
     if not isinstance(value, Iterator):
         return value
     items = list(islice(value, MOST_ITEMS + 1))

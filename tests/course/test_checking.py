@@ -408,7 +408,7 @@ def test_a_script_is_told_in_plain_words(folder: Path) -> None:
 def test_an_assertion_in_a_cell_says_why(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(checking, "_shown_by_a_cell", lambda: True)
+    monkeypatch.setattr(checking, "ipython", object)
     verdict = check("xx.double", lambda x: x)
     assert capsys.readouterr().out == ""  # the cell shows it
     with pytest.raises(AssertionError):
@@ -418,6 +418,32 @@ def test_an_assertion_in_a_cell_says_why(
     assert capsys.readouterr().out == ""  # once is enough
     assert check("xx.double", lambda x: 2 * x)
     assert capsys.readouterr().out == ""
+
+
+CELLS = """
+from IPython.core.interactiveshell import InteractiveShell
+shell = InteractiveShell.instance()
+for cell in [
+    "from ikteach.course import check; import numpy as np",
+    "def column(v, p, s):\\n    exit()\\nverdict = check('01.column', column)",
+    "assert verdict",
+    "assert check('01.column', lambda v, p, s: np.cross(v, s - p))",
+    "check('01.column', lambda v, p, s: np.cross(v, s - p))",
+    "print('alive')",
+]:
+    shell.run_cell(cell)
+assert "ask_exit" not in vars(shell)
+"""
+
+
+def test_in_the_cells_of_a_grader(folder: Path) -> None:
+    """As nbgrader and Otter run them: an assertion is a test, and exit() ends nothing."""
+    done = subprocess.run([sys.executable, "-c", CELLS], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "ended with exit()" in done.stdout
+    assert "AssertionError" in done.stdout
+    assert done.stdout.count("✓ `column` passes every check.") == 1  # the cell that ends with it
+    assert done.stdout.rstrip().endswith("alive")
 
 
 def test_where_nothing_can_be_written_a_check_is_a_test_all_the_same(
