@@ -91,7 +91,7 @@ def gather(ours: Trials, own: Trials) -> Evidence:
         operations=_operations(3 * len(effectors), len(tree)),
         near=_near(),
         feet=_feet(ours),
-        algebra=pd.concat([_straight(), _drawn(ours), _halved(tree, effectors)]),
+        algebra=pd.concat([_straight(), _drawn(ours), _by_the_model(tree, effectors)]),
     )
 
 
@@ -259,13 +259,16 @@ def _drawn(ours: Trials) -> pd.DataFrame:
     return rows[["method", "damping", "caps", "start"]].assign(drawn=drawn)
 
 
-def _halved(tree: Tree, effectors: Effectors) -> pd.DataFrame:
-    """Compare what half of α and all of it leave of e, by the linear model."""
+def _by_the_model(tree: Tree, effectors: Effectors) -> pd.DataFrame:
+    """Compare what half of α and all of it leave of e, and J at targets with J at effectors."""
     poses = starts(tree, 5)
     frames = forward(tree, poses)
     J = jacobian(tree, frames, effectors)
     e = (gait.walking(0.2) - locate(frames, effectors)).reshape(len(poses), -1)
+    other = jacobian(tree, frames, effectors, at=gait.walking(0.2))
+    moved = np.linalg.norm(other - J, axis=(-2, -1)) / np.linalg.norm(J, axis=(-2, -1))
     left = [
         np.linalg.norm(e - np.matvec(J, transpose(J, e, gain=gain)), axis=-1) for gain in (0.5, 1)
     ]
-    return pd.DataFrame({"start": range(len(poses)), "half": left[0] / left[1]})
+    measured = {"half": left[0] / left[1], "at_targets": moved}
+    return pd.DataFrame({"start": range(len(poses)), **measured})

@@ -40,6 +40,7 @@ MEASURES = {  # in words
     "unitary": "‖UᵀU − I‖",
     "axes": "axes that move",
     "half": "what it leaves of e, against all of α",
+    "at_targets": "change of J, as share of it",
     "drawn": "from the drawn foot to the logged one",
 }
 SIGNS = {"less": "<", "more": ">", "at most": "≤"}
@@ -458,6 +459,13 @@ SLIPS = (
         ("half",),
         relation="at most",
         bound=(1.0, 1, ""),
+    ),
+    Claim(
+        "3.2",
+        "J formed at the targets is the same (our reading)",
+        "algebra",
+        ("at_targets",),
+        bound=(0.01, 100, "%"),
     ),
     Claim(
         "5.1.1",

@@ -195,3 +195,28 @@ def test_a_sentence_with_a_bound_follows_the_numbers(claim: Claim):
     holds, fails = words if claim.relation != "more" else words[::-1]
     assert holds == "holds"
     assert fails.startswith("does not hold")
+
+
+def one(section, says):
+    (claim,) = (c for c in CLAIMS if section in c.section and says in c.says)
+    return claim
+
+
+def test_whom_the_thesis_compares_with_whom():
+    slow, best = one("5.3", "slower than the other"), one("5.3", "best performance of all four")
+    assert set(slow.who) == set(best.whom) == set(SOLVERS) - {"sdls"}  # against all three
+    assert (slow.whom, best.who) == (("sdls",), ("sdls",))
+    for says in "not slower", "much better animation":
+        claim = one("7.1", says)
+        assert (claim.who, claim.whom) == (("dls", "sdls"), ("transpose", "pseudoinverse"))
+    assert one("5.3", "substantially better").whom == ("transpose", "pseudoinverse")
+    for says in "both leg targets reachable", "the hands' targets never", "four targets":
+        assert one("5.3", says).table == "reach"
+
+
+def test_the_distance_of_all_motions_is_not_asked_of_the_thesiss():
+    """Walking with hands in reach is ours; the sentences on walking and running leave it out."""
+    for claim in CLAIMS:
+        if claim.table == "runs" and claim.measures != ("reach",) and claim.factor == "method":
+            motions = set(claim.where.get("motion", ()))
+            assert motions in ({"walking", "running"}, {"in reach"}) or "reach" in claim.measures
