@@ -86,7 +86,9 @@ def test_a_foil_goes_wherever_a_method_goes(method):
     session = Session(methods={"foil": method, "dls": "dls"})
     for _ in range(20):
         session.tick()
-    assert set(session.methods) == {"foil", "dls"}
+    session.show("foil")
+    still = np.linalg.norm(session.targets - locate(forward(tree, tree.rest), effectors), axis=-1)
+    assert session.error.mean() < still.mean()
 
 
 def test_a_locked_joint_is_known_to_a_foil():
