@@ -74,7 +74,9 @@ def check_frames(effectors: Effectors, frames: Frames) -> None:
     """Refuse frames that are not of a body of these effectors."""
     if not isinstance(frames, Frames):
         raise TypeError(f"the frames of forward(tree, theta) are needed here, not {shown(frames)}")
-    check_effectors(effectors, frames.positions.shape[-2])
+    n = frames.positions.shape[-2]
+    if not isinstance(effectors, Effectors) or effectors.carried.shape[1] != n:
+        check_effectors(effectors, n)
 
 
 def check_effectors(effectors: Effectors, n: int) -> None:
