@@ -78,7 +78,7 @@ class Trials:
     def distances(self) -> pd.DataFrame:
         """The distance [m], a row per run and effector.
 
-        Its mean, p95 and max.
+        Its mean, p95 and max; `run` is the row of `table`.
         """
         runs = [after(self.run(row), self.settle) for row in range(len(self.table))]
         error = np.stack([run.error for run in runs])  # (rows, T, k)
@@ -88,7 +88,7 @@ class Trials:
         far = pd.DataFrame({name: values.ravel() for name, values in columns.items()})
         far = far.assign(effector=pd.Categorical(names * len(runs), categories=names))
         rows = self.table.loc[np.repeat(self.table.index, len(names)), FACTORS]
-        return pd.concat([rows.reset_index(drop=True), far], axis=1)
+        return pd.concat([rows.reset_index(names="run"), far], axis=1)
 
 
 def trials(
