@@ -281,19 +281,6 @@ def reachable_throughout(
     return np.asarray(reachable(tree, effectors, targets).all(axis=1))
 
 
-def spread(
-    table: pd.DataFrame,
-    measures: Iterable[str] = ("mean", "acceleration", "reversals"),
-    by: Iterable[str] = ("limits", "motion", "caps", "damping", "method"),
-) -> pd.DataFrame:
-    """Summarise measures of `trials` over the starts.
-
-    Three columns each: median, min and max.
-    """
-    by, measures = columns_of(table, by), columns_of(table, measures, numeric=True)
-    return table.groupby(by, observed=True)[measures].agg(["median", "min", "max"])
-
-
 def ranking(
     table: pd.DataFrame,
     measure: str,

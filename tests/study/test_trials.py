@@ -121,11 +121,6 @@ def test_the_ranking_follows_the_numbers():
         assert ranked["wins"] == 3 / 4
 
 
-def test_the_spread_is_over_starts():
-    row = trials.spread(made_up(list(SOLVERS))).loc[(*CELL, "transpose")]
-    assert list(row["mean"]) == [1, 1, 2.5]
-
-
 def test_variants_are_what_single_runs_come_to():
     times = np.arange(1, 11) / 30
     walk = gait.walking(times)
