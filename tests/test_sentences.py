@@ -122,10 +122,6 @@ CALLS = {
     "no λ": (lambda: fair(dampings=[]), "dampings are one λ or more"),
     "λ of words": (lambda: fair(dampings="big"), "dampings must be made of numbers"),
     "trials, reach": (lambda: fair(can_reach=[True]), r"can_reach needs the shape \(1, 1\)"),
-    "spread of what": (
-        lambda: trials.spread(FAIR, ["meen"]),
-        "no column 'meen'; did you mean 'mean'",
-    ),
     "rank what": (lambda: trials.ranking(FAIR, "method"), "'method' is not made of numbers"),
     "rank one": (lambda: trials.ranking(fair(methods="dls"), "mean"), "two methods or more"),
     "against whom": (

@@ -12,11 +12,11 @@ import pandas as pd
 from ikteach.arrays import Array
 from ikteach.body import Effectors, Tree, forward, jacobian, locate
 from ikteach.body.figures import human, planar_arm
-from ikteach.motion import BUSS_CAPS, clip, gait, hold, ignore, step
+from ikteach.motion import BUSS_CAPS, clip, gait, hold, ignore
 from ikteach.motion.reachable import NEAR, nearest
 from ikteach.motion.rules import LimitRule
 from ikteach.solvers import SOLVERS, Solver, dls, sdls, transpose
-from ikteach.study.experiment import Round, arrivals, starts, turns
+from ikteach.study.experiment import Round, arrivals, starts, step_times, turns
 from ikteach.study.runs import after
 from ikteach.study.trials import Trials, trials
 
@@ -26,6 +26,7 @@ LIMITS: Mapping[str, LimitRule] = {"hold": hold, "clip": clip}
 DAMPINGS = (0.05, 0.1, 0.2, 0.4, 0.8)  # λ [m/rad]
 RATE = 30  # frames per second
 CIRCLE = Round(centre=(-0.45, 0.25, 0.35), radius=0.12)  # which the right hand can follow
+ROUNDS = 25  # of timing
 MOST = 300  # steps, after which nobody waits for an arrival
 BENDS = (4.0, 5.0, 6.0)  # of an arm that is nearly straight [°]
 
@@ -142,22 +143,15 @@ def _times(tree: Tree, effectors: Effectors, targets: Array) -> pd.DataFrame:
     J, s = jacobian(tree, frames, effectors), locate(frames, effectors)
     errors = [np.ravel(goal - s) for goal in targets]
 
-    def steps(solver: Solver) -> None:
-        for goal in targets:  # from one pose and without limits: every method has the same to do
-            step(tree, tree.rest, effectors, goal, solver, limits=ignore)
-
     def solves(solver: Solver) -> None:
         for e in errors:
             solver(J, e)
 
-    calls = {
-        (name, what): partial(do, solver)
-        for name, solver in SOLVERS.items()
-        for what, do in (("step", steps), ("solve", solves))
-    }
-    # The quickest of the rounds is the one that the machine disturbed least.
-    found = pd.DataFrame(turns(calls, 25)).min() / len(targets)
-    return found.unstack().rename_axis("method").reset_index()
+    alone = turns({name: partial(solves, solver) for name, solver in SOLVERS.items()}, ROUNDS)
+    # Without limits every method has the same to do around the solver.
+    step = step_times(tree, effectors, targets, rounds=ROUNDS, limits=ignore)
+    solve = {name: seconds.min() / len(targets) for name, seconds in alone.items()}
+    return pd.DataFrame({"step": step, "solve": solve}).rename_axis("method").reset_index()
 
 
 def _arrivals(tree: Tree, effectors: Effectors, times: pd.DataFrame) -> pd.DataFrame:

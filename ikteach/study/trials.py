@@ -78,7 +78,7 @@ class Trials:
     def distances(self) -> pd.DataFrame:
         """The distance [m], a row per run and effector.
 
-        Its mean, p95 and max.
+        Its mean, p95 and max; `run` is the row of `table`.
         """
         runs = [after(self.run(row), self.settle) for row in range(len(self.table))]
         error = np.stack([run.error for run in runs])  # (rows, T, k)
@@ -88,7 +88,7 @@ class Trials:
         far = pd.DataFrame({name: values.ravel() for name, values in columns.items()})
         far = far.assign(effector=pd.Categorical(names * len(runs), categories=names))
         rows = self.table.loc[np.repeat(self.table.index, len(names)), FACTORS]
-        return pd.concat([rows.reset_index(drop=True), far], axis=1)
+        return pd.concat([rows.reset_index(names="run"), far], axis=1)
 
 
 def trials(
@@ -279,19 +279,6 @@ def reachable_throughout(
     angles = np.linspace(0, 2 * np.pi, count("phases", phases), endpoint=False)
     targets = _targets(effectors, motions, angles, by_phase=True)
     return np.asarray(reachable(tree, effectors, targets).all(axis=1))
-
-
-def spread(
-    table: pd.DataFrame,
-    measures: Iterable[str] = ("mean", "acceleration", "reversals"),
-    by: Iterable[str] = ("limits", "motion", "caps", "damping", "method"),
-) -> pd.DataFrame:
-    """Summarise measures of `trials` over the starts.
-
-    Three columns each: median, min and max.
-    """
-    by, measures = columns_of(table, by), columns_of(table, measures, numeric=True)
-    return table.groupby(by, observed=True)[measures].agg(["median", "min", "max"])
 
 
 def ranking(

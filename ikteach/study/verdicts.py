@@ -181,7 +181,7 @@ def holding(table: pd.DataFrame, orders: Iterable[str], measure: str) -> list[st
 def _shares(values: pd.Series, yes: pd.Series) -> str:
     """Tell in which share of the cells it holds at each value of a factor."""
     shares = yes.groupby(values, observed=True).mean()
-    return ", ".join(
+    return ("λ " if values.name == "damping" else "") + ", ".join(
         f"{f'{value:g}' if isinstance(value, float) else value} {share:.0%}"
         for value, share in shares.items()
     )

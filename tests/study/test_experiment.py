@@ -26,6 +26,7 @@ from ikteach import (
 )
 from ikteach.motion import per_chain
 from ikteach.study.experiment import (
+    Round,
     arrivals,
     capped,
     circle,
@@ -35,6 +36,7 @@ from ikteach.study.experiment import (
     reversals,
     starts,
     step_times,
+    turns,
 )
 
 ARM, HUMAN = figures.planar_arm(3), figures.human()
@@ -171,6 +173,21 @@ def test_a_quarter_of_the_circle_is_out_of_the_arms_reach():
     assert goal.shape == (400, 1, 3)
     assert (np.linalg.norm(goal, axis=-1) > 3).mean() == pytest.approx(0.25, abs=0.02)
     assert_allclose(circle([0.3]), circle([2.3]))
+
+
+def test_calls_take_turns():
+    called = []
+    seconds = turns({name: partial(called.append, name) for name in "ab"}, rounds=3)
+    assert called == [*"ababab"]
+    assert {name: times.shape for name, times in seconds.items()} == {"a": (3,), "b": (3,)}
+    assert min(times.min() for times in seconds.values()) >= 0
+
+
+def test_a_round_is_a_circle_by_time_and_by_phase():
+    motion = Round(centre=(0.0, 1.0, 2.0), radius=0.5, turn=4.0)
+    times = np.linspace(0, 4, 9)
+    assert_allclose(motion(times), circle(times, centre=(0, 1, 2), radius=0.5, turn=4), atol=1e-12)
+    assert_allclose(motion.at(2 * np.pi * times / 4), motion(times), atol=1e-12)
 
 
 def test_step_times_are_of_every_method():

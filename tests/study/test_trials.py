@@ -68,6 +68,7 @@ def test_a_row_is_the_run_that_it_stands_for(found):
         mine = found.distances.iloc[4 * row.Index : 4 * row.Index + 4]
         assert list(mine["effector"]) == list(HUMAN.effectors.names)
         assert (mine["start"] == 1).all()
+        assert (mine["run"] == row.Index).all()
         assert_allclose(mine["mean"], late.error.mean(axis=0), rtol=1e-6)
         assert_allclose(mine["p95"], np.quantile(late.error, 0.95, axis=0), rtol=1e-6)
         assert_allclose(mine["max"], late.error.max(axis=0), rtol=1e-6)
@@ -118,11 +119,6 @@ def test_the_ranking_follows_the_numbers():
         assert ranked["order"] == " < ".join(order)
         assert ranked["first"] == order[0]
         assert ranked["wins"] == 3 / 4
-
-
-def test_the_spread_is_over_starts():
-    row = trials.spread(made_up(list(SOLVERS))).loc[(*CELL, "transpose")]
-    assert list(row["mean"]) == [1, 1, 2.5]
 
 
 def test_variants_are_what_single_runs_come_to():

@@ -16,7 +16,7 @@ from ikteach.motion.gait import stature
 from ikteach.motion.live.session import Session
 from ikteach.motion.live.settings import SESSION, check_options
 from ikteach.motion.methods import Methods
-from ikteach.study.trials import Trials
+from ikteach.study.trials import Trials, ranking
 from ikteach.view.chapters.gait import session_table
 from ikteach.view.charts import MARKS, STYLES
 from ikteach.view.live.live import Live
@@ -336,7 +336,11 @@ def order_chart(
     rules, methods = list(dict.fromkeys(table["limits"])), list(table["method"].unique())
     figure = Figure(figsize=(8.4, 3.6), dpi=100, layout="constrained")
     panels = figure.subplots(1, len(rules), sharey=True, squeeze=False)[0]
-    words = []
+    orders = ranking(table, measure, ["limits", "damping"])["order"]
+    words = [
+        f"{rule}, λ {damping:g}: {order}"
+        for (rule, damping), order in zip(orders.index, orders, strict=True)
+    ]
     for axes, rule in zip(panels, rules, strict=True):
         cells = table[table["limits"] == rule].groupby(["method", "damping"], observed=True)
         found = cells[measure].agg(["min", "median", "max"])
@@ -350,11 +354,6 @@ def order_chart(
         axes.set_xticks(found.index.levels[1], [f"{one:g}" for one in found.index.levels[1]])
         axes.minorticks_off()
         axes.grid(alpha=0.3)
-        orders = found["median"].unstack("method").T
-        words += [
-            f"{rule}, λ {damping:g}: {' < '.join(orders[damping].sort_values().index)}"
-            for damping in orders
-        ]
     panels[0].set_ylabel(ylabel)
     handles = panels[0].get_legend_handles_labels()
     figure.legend(*handles, loc="outside lower center", ncols=len(methods), fontsize=8)
