@@ -62,6 +62,7 @@ def means(table: pd.DataFrame, measure: str) -> dict[str, float]:
         '`mean = table.groupby("method", observed=True)[["error", "jitter"]].mean()`, then '
         '`mean[mean["jitter"] <= most].sort_values("error").index`',
     ],
+    seconds=40,
 )
 def order(answer: Answer) -> None:
     """order(table, most): names, the nearest first, of the methods that shake no more than most."""
@@ -103,7 +104,7 @@ def order(answer: Answer) -> None:
         "`gait.running(gait.running.clock(60))`, `np.radians(10)` and "
         '`lambda log: log.groupby("method", observed=True)["error"].mean().idxmin()`',
     ],
-    seconds=60,
+    seconds=120,
 )
 def experiment(answer: Answer) -> None:
     """experiment() -> targets (T, 4, 3) [m], a cap [rad], and a function of a log."""
