@@ -8,7 +8,7 @@ import pandas as pd
 from ikteach import study
 from ikteach.body import figures
 from ikteach.course.checking import Answer, exercise, expect
-from ikteach.course.forms import NAME, NAMES, WrongError, of_form, parts
+from ikteach.course.forms import NAME, NAMES, NotYetError, WrongError, of_form, parts
 from ikteach.motion import gait
 from ikteach.solvers import SOLVERS
 
@@ -108,7 +108,9 @@ def order(answer: Answer) -> None:
 )
 def experiment(answer: Answer) -> None:
     """experiment() -> targets (T, 4, 3) [m], a cap [rad], and a function of a log."""
-    given, cap, winner = answer()
+    made = given, cap, winner = answer()
+    if any(part is ... for part in made):
+        raise NotYetError("three things are asked for: targets, a cap and a function.")
     targets, max_step = designed(given, cap)
     if not callable(winner):
         raise WrongError(

@@ -75,7 +75,7 @@ def named(value: Any) -> dict[str, str]:
     if any(method is ... for method in pairs.values()):
         raise NotYetError("name a method for every effector.")
     return {
-        str(name): of_form(method, NAME, f"The method of {name!r} is")
+        str(name): of_form(method, NAME, f"The method of {name!r} is").lower()
         for name, method in pairs.items()
     }
 
