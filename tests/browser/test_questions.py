@@ -14,12 +14,15 @@ CELLS = {
     "number": "predict('99.number', 'How many poses?', numbers=(0, 10, 'poses'))",
     "ranking": "predict('99.rank', 'Rank them.', ['sdls', 'dls', 'transpose'], ranking=True)",
     "quiz": "quiz('99.quiz', 'Which one?', ['a', 'b'], 'b', {'a': 'It lags.', 'b': 'So it is.'})",
+    "ours": "quiz('03.stuck')",
+    "path": "check('07.path', lambda p: np.stack([0 * p, 0.2 * np.sin(6.2831853 * p)], -1))",
 }
+IMPORTS = "import numpy as np\nfrom ikteach.course import check, predict, quiz, reveal"
 
 
 @pytest.fixture(scope="module")
 def asked(open_notebook: Any, lab: Lab) -> Notebook:
-    cells = [nbformat.v4.new_code_cell("from ikteach.course import predict, quiz, reveal")]
+    cells = [nbformat.v4.new_code_cell(IMPORTS)]
     cells += [nbformat.v4.new_code_cell(source) for source in CELLS.values()]
     kernel = {"kernelspec": {"name": "python3", "display_name": "Python 3 (ipykernel)"}}
     notebook = nbformat.v4.new_notebook(cells=cells, metadata=kernel)
@@ -96,3 +99,24 @@ def test_a_quiz(asked: Notebook, lab: Lab) -> None:
     assert stored(lab, "quiz", "99.quiz")["right"] is True
     asked.shot("questions_answered")
     assert asked.errors == []
+
+
+def test_a_question_of_the_course_by_its_key(asked: Notebook, lab: Lab) -> None:
+    found = form(asked, "A straight arm, its target straight inward.")
+    found.get_by_label("It stands still").check()
+    found.get_by_role("button", name="Check").click()
+    status(found, "✓ Right. Jᵀe is exactly zero")
+    assert stored(lab, "quiz", "03.stuck")["right"] is True
+
+
+def test_a_verdict_with_its_hint_and_picture(asked: Notebook, lab: Lab) -> None:
+    said = asked.page.get_by_role("status").filter(has_text="The foot lifts by 0 cm")
+    said.wait_for(timeout=READY)
+    assert "Hint 1 of 3: For which part of the cycle" in said.inner_text()
+    picture = asked.page.get_by_alt_text("Your foot, from the side: z from -0.2 to 0.2 m")
+    picture.scroll_into_view_if_needed()
+    assert picture.evaluate("image => image.naturalWidth") > 300
+    asked.shot("07_path_verdict")
+    verdict = stored(lab, "verdicts", "07.path")
+    assert not verdict["passed"]
+    assert "np.sin(6.2831853 * p)" in verdict["source"]

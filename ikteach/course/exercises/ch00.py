@@ -85,6 +85,7 @@ def places() -> list[tuple[float, float, float, float]]:
         "So |a − b| ≤ √(x² + y²) ≤ a + b.",
         "`return abs(a - b) <= np.hypot(x, y) <= a + b`",
     ],
+    seconds=20,
 )
 def reach(answer: Answer) -> None:
     """can_reach(x, y, a, b) -> bool for an arm of two links a and b [m]."""

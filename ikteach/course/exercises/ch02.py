@@ -90,6 +90,7 @@ def truth(J: Array, e: Array) -> str:
         "dtheta - e) > 1e-9 * size`, where "
         "`size = np.linalg.norm(e)`.",
     ],
+    seconds=30,
 )
 def classify(answer: Answer) -> None:
     """classify(J, e) -> "free", "near", "partly lost" or "lost"."""

@@ -110,6 +110,7 @@ def safe(answer: Answer) -> None:
         "(2 − gain). At which other gain is it 1 again?",
         "`return 1 - (1 - best) * gain * (2 - gain)`",
     ],
+    seconds=15,
 )
 def gain(answer: Answer) -> None:
     """left(gain, best): what of ‖e‖² a step leaves, where that with gain 1 leaves `best`."""

@@ -92,6 +92,7 @@ def unclamped() -> Iterator[tuple[Array, float]]:
         "The whole of φ shrinks by the share min(1, bound / max |φⱼ|), with a thought for φ = 0.",
         "`peak = abs(phi).max()` and `return phi * min(1, bound / peak) if peak else phi`",
     ],
+    seconds=20,
 )
 def clamp(answer: Answer) -> None:
     for phi, bound in unclamped():

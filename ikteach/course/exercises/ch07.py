@@ -70,6 +70,7 @@ def _drawn(answer: Answer) -> Any:
         "`swing = np.clip((np.mod(phase, 1) - 0.6) / 0.4, 0, 1)` and `np.stack([height, z], -1)`",
     ],
     drawn=_drawn,
+    seconds=20,
 )
 def path(answer: Answer) -> None:
     """path(phase (m,)) -> (m, 2): height over the ground and z of a foot [m], phase in cycles."""

@@ -8,7 +8,7 @@ import pandas as pd
 from ikteach import study
 from ikteach.body import figures
 from ikteach.course.checking import Answer, exercise, expect
-from ikteach.course.forms import NAME, NAMES, WrongError, of_form, parts
+from ikteach.course.forms import NAME, NAMES, NotYetError, WrongError, of_form, parts
 from ikteach.motion import gait
 from ikteach.solvers import SOLVERS
 
@@ -62,6 +62,7 @@ def means(table: pd.DataFrame, measure: str) -> dict[str, float]:
         '`mean = table.groupby("method", observed=True)[["error", "jitter"]].mean()`, then '
         '`mean[mean["jitter"] <= most].sort_values("error").index`',
     ],
+    seconds=40,
 )
 def order(answer: Answer) -> None:
     """order(table, most): names, the nearest first, of the methods that shake no more than most."""
@@ -103,11 +104,13 @@ def order(answer: Answer) -> None:
         "`gait.running(gait.running.clock(60))`, `np.radians(10)` and "
         '`lambda log: log.groupby("method", observed=True)["error"].mean().idxmin()`',
     ],
-    seconds=60,
+    seconds=120,
 )
 def experiment(answer: Answer) -> None:
     """experiment() -> targets (T, 4, 3) [m], a cap [rad], and a function of a log."""
-    given, cap, winner = answer()
+    made = given, cap, winner = answer()
+    if any(part is ... for part in made):
+        raise NotYetError("three things are asked for: targets, a cap and a function.")
     targets, max_step = designed(given, cap)
     if not callable(winner):
         raise WrongError(

@@ -75,7 +75,7 @@ def named(value: Any) -> dict[str, str]:
     if any(method is ... for method in pairs.values()):
         raise NotYetError("name a method for every effector.")
     return {
-        str(name): of_form(method, NAME, f"The method of {name!r} is")
+        str(name): of_form(method, NAME, f"The method of {name!r} is").lower()
         for name, method in pairs.items()
     }
 
@@ -92,7 +92,7 @@ STEPS, STARTS, CAP = 60, 5, np.radians(5)  # of a drive
         "Downhill is Jᵀe. How far? α Jᵀe (chapter 3), or Jᵀ(JJᵀ + λ²I)⁻¹e (chapter 5).",
         "`return J.T @ np.linalg.solve(J @ J.T + 0.1**2 * np.eye(len(e)), e)`",
     ],
-    seconds=30,
+    seconds=60,
 )
 def solver(answer: Answer) -> None:
     """my_solver(J (m, n), e (m,)) -> Δθ (n,) drives any body towards its targets."""

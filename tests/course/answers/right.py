@@ -379,6 +379,7 @@ RIGHT = [
     ("08.experiment", experiment_yields),
     ("08.experiment", experiment_function),
     ("09.mix", {"foot.l": sdls, "foot.r": sdls, **HANDS}),
+    ("09.mix", {"foot.l": "SDLS", "foot.r": " sdls", **HANDS}),
     ("09.mix", [("foot.l", "sdls"), ("foot.r", "sdls"), *HANDS.items()]),
     (
         "09.mix",
