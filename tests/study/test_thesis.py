@@ -3,11 +3,15 @@
 The experiment is that of chapter 8 with fewer starts and λ.
 """
 
+import json
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 import rounding
 
-from ikteach import SOLVERS, figures
+from ikteach import SOLVERS, figures, solvers
 from ikteach.study import evidence, thesis
 from ikteach.study.experiment import starts
 from ikteach.study.trials import trials
@@ -91,3 +95,16 @@ def test_no_verdict_hangs_on_the_last_bits_of_a_processor(facts, monkeypatch):
         if claim.table not in TIMED:
             before, after = (claim.verdict(getattr(of, claim.table)) for of in (facts, again))
             assert before.word == after.word, claim.says
+
+
+def test_the_names_that_optimisers_have_are_those_of_the_solvers():
+    """The table of chapter 8 and the docstring of `ikteach.solvers` say the same."""
+    path = Path(__file__).parents[2] / "notebooks" / "08_comparison.ipynb"
+    first = "".join(json.loads(path.read_text(encoding="utf-8"))["cells"][0]["source"])
+    rows = dict(re.findall(r"^\| (\w+)[^|]* \| ([^|]+?) \|$", first, re.MULTILINE))
+    del rows["here"]
+    assert set(rows) == {*SOLVERS, "ccd"}
+    for method, name in rows.items():
+        (line,) = re.findall(rf"^ +{method} +(.+)$", solvers.__doc__, re.MULTILINE)
+        known = re.match(r"[^ ,]+( descent)?", name)
+        assert line.startswith(known[0])
