@@ -237,6 +237,9 @@ def test_chapter_7_by_keys_alone(gait: Notebook) -> None:
     with page.expect_download(timeout=READY) as saved:
         keys.press("p")
     assert Path(saved.value.path()).read_bytes().startswith(b"\x89PNG")
+    tab_to(gait, "Distances")
+    keys.press("Enter")
+    page.wait_for_function("document.activeElement.ariaPressed === 'true'", timeout=READY)
     tab_to(gait, "Play")
     keys.press("Space")
     gait.settle("player.playing", True)
