@@ -18,7 +18,7 @@ AGAIN = Markup(
     '<p style="border-left:4px solid #0072b2;padding:4px 10px;margin:4px 0">{} To have it again, '
     "run the cell above (Shift + Enter), or all of them: Run ▸ Run All Cells.</p>"
 )
-STILL = AGAIN.format("This is as it stood when the notebook was saved; its kernel has ended.")
+STILL = AGAIN.format("This is as it stood when its cell was run; the kernel has ended since.")
 NOTHING = AGAIN.format("What stood here has ended with its kernel.")
 
 

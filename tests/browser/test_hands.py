@@ -20,6 +20,7 @@ FIGURES = {
     "07_gait.ipynb": "player = GaitPlayer()",
     "09_workbench.ipynb": "bench = Workbench()",
 }
+TOUCHED = "Unable to preventDefault inside passive"  # what pythreejs says of each finger
 CAMERA = "[round(x, 3) for x in {}.scene.camera.position]"
 FOCUS = """() => {
   const { activeElement: one } = document;
@@ -121,7 +122,7 @@ def test_the_figure_is_in_view_after_its_cell(figure: Notebook) -> None:
 def gait(opened: Any, figure: Notebook) -> Iterator[Notebook]:
     notebook = opened("07_gait.ipynb", FIGURES["07_gait.ipynb"])
     yield notebook
-    assert notebook.errors == []
+    assert [error for error in notebook.errors if not error.startswith(TOUCHED)] == []
 
 
 def test_chapter_7_is_in_view_after_its_cell(gait: Notebook) -> None:
@@ -236,6 +237,9 @@ def test_chapter_7_by_keys_alone(gait: Notebook) -> None:
     with page.expect_download(timeout=READY) as saved:
         keys.press("p")
     assert Path(saved.value.path()).read_bytes().startswith(b"\x89PNG")
+    tab_to(gait, "Distances")
+    keys.press("Enter")
+    page.wait_for_function("document.activeElement.ariaPressed === 'true'", timeout=READY)
     tab_to(gait, "Play")
     keys.press("Space")
     gait.settle("player.playing", True)

@@ -36,8 +36,6 @@ class Event(NamedTuple):
 def _brief(value: Any) -> str:
     """Write a value with as many digits as a person reads."""
     match value:
-        case bool():
-            return "yes" if value else "no"
         case float():
             return str(float(f"{value:.4g}"))
         case Mapping():

@@ -53,7 +53,7 @@ export class Looking {
     const tools = element("div", { class: "ikteach-tools", role: "toolbar", ...OWN_KEYS });
     tools.setAttribute("aria-label", "Picture");
     el.prepend(tools);
-    const show = () => tools.replaceChildren(...this.#buttons());
+    const show = () => this.#renew(tools);
     this.#stops.push(listen(model, { "change:acts": show, "change:pace": show }));
     this.#stops.push(listen(model, { "change:measuring": show }));
     this.#stops.push(() => tools.remove());
@@ -146,6 +146,22 @@ export class Looking {
     this.#scene.redraw();
   }
 
+  /**
+   * Show the buttons as they are now; the focus, and the keys that were unfolded, stay.
+   * @param {HTMLElement} tools
+   */
+  #renew(tools) {
+    const held = document.activeElement;
+    const key = held instanceof HTMLElement && tools.contains(held) ? held.dataset.key : undefined;
+    const open = tools.querySelector("details")?.open ?? false;
+    tools.replaceChildren(...this.#buttons());
+    /** @type {HTMLElement | null} */
+    const same = tools.querySelector(`[data-key="${key}"]`);
+    same?.focus({ preventScroll: true });
+    const keys = tools.querySelector("details");
+    if (keys) keys.open = open;
+  }
+
   #buttons() {
     const model = this.#model;
     const acts = Object.entries(model.get("acts"));
@@ -168,7 +184,7 @@ export class Looking {
    */
   #button(key, label, more = {}) {
     const title = `${label} (key ${key.toUpperCase()})`;
-    const button = element("button", { type: "button", title, ...more }, label);
+    const button = element("button", { type: "button", "data-key": key, title, ...more }, label);
     button.addEventListener("click", () => this.act(key));
     return button;
   }

@@ -415,3 +415,23 @@ def test_a_drag_that_has_not_moved_yet_begins_another_event(session):
     assert kinds(session) == ["target", "target"]
     session.undo()
     assert_array_equal(session.targets[3], HAND)
+
+
+def test_to_begin_again_is_one_change_back_to_the_first_settings(session):
+    first = session.settings()
+    session.show("sdls")
+    session.adjust(max_step=0.1)
+    session.aim("hand.l", [0.3, 0.2, 0.1])
+    session.tick()
+    session.begin_again()
+    assert session.ticks == 0
+    assert session.settings() == first
+    session.undo()
+    assert (session.method, session.by_hand, session.options["max_step"]) == ("sdls", True, 0.1)
+
+
+def test_an_event_says_its_numbers_as_a_person_reads_them(session):
+    session.aim("hand.l", [1 / 3, 0.9589900732055506, -1.0])
+    assert str(session.events[-1]) == "target: effector hand.l, position (0.3333, 0.959, -1.0)"
+    session.by_hand = False
+    assert str(session.events[-1]) == "by hand: by_hand False"

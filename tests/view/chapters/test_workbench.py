@@ -2,8 +2,10 @@
 
 import pytest
 
+from ikteach.body import locate
 from ikteach.motion.rules import BUSS_CAPS
 from ikteach.view.chapters.workbench import Workbench
+from ikteach.view.stage.lengths import Lengths
 
 PLACE = [0.6, 0.25, 0.1]
 
@@ -94,3 +96,59 @@ def test_the_picture_keeps_its_settings_when_the_figures_change(bench):
     assert control(bench, "azimuth").value == 10.0
     control(bench, "straight").click()
     assert control(bench, "zoom").value == 1.0
+
+
+def test_to_begin_again_puts_controls_and_picture_back(bench):
+    first = {title: panel.values for title, panel in bench.panels.items()}
+    control(bench, "method").value = "sdls"
+    control(bench, "sdls.clamp").value = "soft"
+    control(bench, "speed").value = 9.0
+    control(bench, "layer.world axes").value = True
+    control(bench, "dark").value = True
+    control(bench, "ghost").value = "pseudoinverse"
+    assert len(bench.scene.stage) == 2
+    bench.slow_down()
+    bench.begin_again()
+    assert {title: panel.values for title, panel in bench.panels.items()} == first
+    assert (len(bench.scene.stage), bench.scene.driver.pace) == (1, "1×")
+    assert not any(bench.scene.layers.values())
+    assert bench.playing
+
+
+def test_a_ghost_stands_in_the_place_of_the_shown_figure(bench):
+    control(bench, "ghost").value = "pseudoinverse"
+    assert control(bench, "figures").value == "one and a ghost"
+    for _ in range(30):
+        bench.session.tick()
+    bench.draw()
+    shown, ghost = bench.scene.now.effectors
+    names = [bench.session.method, "pseudoinverse"]
+    for seen, name in zip((shown, ghost), names, strict=True):
+        frames = bench.session.frames_of(name)
+        assert seen == pytest.approx(locate(frames, bench.session.effectors))
+
+
+def test_keys_at_the_picture_press_what_they_name(bench):
+    press = bench.scene._perform
+    press(" ")
+    assert not bench.playing
+    ticks = bench.session.ticks
+    press(".")
+    assert bench.session.ticks == ticks + 1
+    for key, (words, _) in bench.acts().items():
+        if key.isdigit():
+            press(key)
+            assert words == f"shows {bench.session.method}"
+    press("s")
+    assert bench.scene.driver.pace == "½×"
+    press("no key")  # of a page that is older than the figure
+
+
+def test_the_picture_tells_distances_while_it_is_asked(bench):
+    sent = []
+    bench.scene.driver.send = lambda content, buffers=None: sent.append(content)
+    bench.draw()
+    assert "far" not in sent[-1]
+    bench.scene.driver.measuring = True
+    length = Lengths.of(bench.session.tree, bench.session.effectors)
+    assert sent[-1]["far"] == [length(float(far)) for far in bench.session.error]
