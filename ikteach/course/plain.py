@@ -98,7 +98,7 @@ PLAIN: Mapping[Any, tuple[list[Any], Callable[..., float]]] = {
 
 
 def largest_difference(thing: Any) -> float:
-    """Compare a function with its plain version on poses drawn at random."""
+    """Compare a function with its plain version, on many poses."""
     tree, effectors = human()
     errors = 0.1 * np.random.default_rng(3).normal(size=(POSES, 3 * len(effectors)))
     _, compare = PLAIN[thing]

@@ -78,7 +78,7 @@ def time_trial(
 
 
 def arrival(error: Array, jitter: Array, within: float) -> tuple[bool, int, float]:
-    """Tell whether a run arrived, after how many steps, and its jitter till then.
+    """Tell whether a run arrived, when, and its jitter.
 
     error (T, k) [m], jitter (T,) [rad]. It has arrived once all effectors are `within` [m].
     """
