@@ -11,7 +11,7 @@ import ikteach
 
 PACKAGE = Path(ikteach.__file__).parent
 MODULES = sorted(path.relative_to(PACKAGE) for path in PACKAGE.rglob("*.py"))
-TASKS = {"exercises", "solutions"}  # whose names and words are those of the notebooks
+TASKS = {"exercises", "solutions", "quizzes"}  # whose names and words are those of the notebooks
 OURS = [module for module in MODULES if TASKS.isdisjoint(module.parts)]
 
 LONGEST = {ast.ClassDef: 250, ast.FunctionDef: 50, ast.AsyncFunctionDef: 50}  # lines

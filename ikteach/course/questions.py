@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ikteach.checks import shown
 from ikteach.course import record
 from ikteach.course.notice import box
+from ikteach.course.quizzes import asked
 from ikteach.files import bounded, jsonable
 from ikteach.markup import Markup
 
@@ -190,19 +191,27 @@ def _lock(key: str) -> None:
 
 
 def quiz(
-    key: str, question: str, options: Sequence[str], right: str, why: str | Mapping[str, str]
+    key: str,
+    question: str = "",
+    options: Sequence[str] = (),
+    right: str = "",
+    why: str | Mapping[str, str] = "",
 ) -> "Question":
     """Ask an exit question.
 
     Make it the last line of its cell.
 
-    right  the right one of the options
+    key    alone, it asks one of the course's own, from `ikteach.course.quizzes`
+    right  for a question of yours: the right one of the options
     why    {option: a sentence} for the options, said when one is chosen; or one sentence for all
-    LookupError if `right` or a key of `why` is not among the options.
+    LookupError for an unknown key, or if `right` or a key of `why` is not among the options.
     """
     from ikteach.course.widget import Question
     from ikteach.names import unknown
 
+    if not question:
+        ours = asked(key)
+        question, options, right, why = ours.question, ours.choices, ours.right, ours.why
     options = _choices(key, options)
     if not isinstance(why, str | Mapping):
         raise TypeError(

@@ -1,8 +1,10 @@
 """Predictions, quiz and the file of answers: nothing is lost, and the course goes on."""
 
+import importlib
 import io
 import json
 import os
+import re
 import threading
 from pathlib import Path
 from typing import Any
@@ -11,7 +13,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ikteach.course import export, predict, quiz, record, reveal
+from ikteach.course import export, predict, quiz, quizzes, record, reveal
 from ikteach.course.notice import Notice
 from ikteach.course.widget import Question
 
@@ -138,6 +140,30 @@ def test_questions_without_options_are_refused() -> None:
         quiz("03.q", "What?", ["a", "b"], "c", "why")
     with pytest.raises(LookupError, match="'d'"):
         quiz("03.q", "What?", ["a", "b"], "a", {"d": "why"})
+
+
+def test_exit_questions_are_those_of_the_notebooks_and_give_nothing_away() -> None:
+    """A notebook names the key; the answer and the reasons are in the package alone."""
+    ours = {}
+    for path in sorted(Path(quizzes.__file__).parent.glob("ch*.py")):
+        ours |= importlib.import_module(f"{quizzes.__name__}.{path.stem}").QUIZZES
+    there = set()
+    for path in sorted((Path(__file__).parents[2] / "notebooks").glob("*.ipynb")):
+        text = json.loads(path.read_text(encoding="utf-8"))
+        source = "\n".join("".join(cell["source"]) for cell in text["cells"])
+        there |= set(re.findall(r'^quiz\("([^"]+)"\)$', source, re.MULTILINE))
+        for key, one in ours.items():
+            reasons = [one.why] if isinstance(one.why, str) else one.why.values()
+            assert not any(reason in source for reason in reasons), f"{key} in {path.name}"
+    assert there == set(ours)
+    for key, one in ours.items():
+        question = quiz(key)
+        assert question.options == one.choices
+        assert answer(question, one.right).startswith("✓ Right. ")
+        wrong = [answer(question, other) for other in one.choices if other != one.right]
+        assert all(said.startswith("✗ Not so. ") and len(said) > 12 for said in wrong)
+    with pytest.raises(LookupError, match=r"no exit question '03.stick'; did you mean '03.stuck'"):
+        quiz("03.stick")
 
 
 def test_quiz_explains_each_answer(folder: Path) -> None:

@@ -1,12 +1,13 @@
-"""Chapter 9: a mix of methods, a method per effector."""
+"""Chapter 9: a mix of methods, a method per effector; and a solver of one's own."""
 
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from ikteach.body import figures
-from ikteach.course.checking import NotYetError, WrongError, exercise, expect
+from ikteach.arrays import Array
+from ikteach.body import figures, forward, jacobian, locate
+from ikteach.course.checking import Answer, NotYetError, WrongError, exercise, expect
 from ikteach.motion import gait, track
 from ikteach.motion.mix import Mix
 from ikteach.solvers import SOLVERS
@@ -56,3 +57,79 @@ def mix(value: Any) -> None:
     feet, shake = walk(Mix.of(effectors, dict(value)))
     expect(feet < FEET, f"The feet are {1000 * feet:.1f} mm from their targets, not below 2 mm.")
     expect(shake < SHAKE, f"The figure shakes by {shake:.1f}° per tick, not below {SHAKE:g}°.")
+
+
+BODIES = (figures.human, figures.planar_arm, figures.simulator)
+STEPS, STARTS, CAP = 60, 5, np.radians(5)  # of a drive
+
+
+@exercise(
+    "09.solver",
+    returns=lambda J, e: J.shape[1:],
+    hints=[
+        "Which direction of Δθ surely brings the effectors nearer: what is the slope of ‖e‖²?",
+        "Downhill is Jᵀe. How far? α Jᵀe (chapter 3), or Jᵀ(JJᵀ + λ²I)⁻¹e (chapter 5).",
+        "`return J.T @ np.linalg.solve(J @ J.T + 0.1**2 * np.eye(len(e)), e)`",
+    ],
+    seconds=30,
+)
+def solver(answer: Answer) -> None:
+    """my_solver(J (m, n), e (m,)) -> Δθ (n,) drives any body towards its targets."""
+    rng = np.random.default_rng(9)
+    for body in BODIES:
+        tree, effectors = body()
+        for _ in range(6):
+            theta = tree.rest + rng.uniform(-0.5, 0.5, len(tree))
+            J = jacobian(tree, forward(tree, theta), effectors)
+            e = rng.normal(size=len(J)) * 10.0 ** rng.uniform(-3, 0)
+            dtheta = answer(J, e)
+            gain = float(e @ (J @ dtheta))
+            expect(
+                gain > 0,
+                f"With J {J.shape} and an error of {np.linalg.norm(e):.3g} m your step "
+                f"{'leads away from' if gain < 0 else 'does not lead to'} the targets: "
+                f"⟨e, JΔθ⟩ is {gain:.3g}, and it must be above 0.",
+            )
+        still = answer(J, np.zeros(len(J)))
+        expect(not still.any(), f"Where the error is 0 your step is {abs(still).max():.3g} rad.")
+    tree, effectors = figures.planar_arm()
+    straight = jacobian(tree, forward(tree, np.zeros(len(tree))), effectors)
+    answer(straight, np.array([-0.1, 0, 0]))  # whatever it is, it must be a finite step
+    for body in BODIES:
+        before, after = driven(answer, body)
+        expect(
+            after < 0.25 * before,
+            f"{STEPS} steps of at most 5° a joint leave a body of {len(body()[0])} joints "
+            f"{100 * after:.1f} cm from targets that it can reach; it began {100 * before:.1f} cm "
+            "away, and less than a quarter should be left.",
+        )
+
+
+def driven(solver: Any, body: Any) -> tuple[float, float]:
+    """Median distance to targets that can be reached, before and after some steps [m]."""
+    tree, effectors = body()
+    rng = np.random.default_rng(90)
+    goal, start = tree.rest + rng.uniform(-0.3, 0.3, (2, STARTS, len(tree)))
+    targets = locate(forward(tree, np.clip(goal, tree.lower, tree.upper)), effectors)
+    start = np.clip(start, tree.lower, tree.upper)
+    before = np.linalg.norm(targets - locate(forward(tree, start), effectors), axis=-1)
+    run = track(
+        tree,
+        effectors,
+        np.broadcast_to(targets, (STEPS, *targets.shape)),
+        one_by_one(solver),
+        theta=start,
+        max_step=CAP,
+    )
+    return float(np.median(before)), float(np.median(run.error[-1]))
+
+
+def one_by_one(solver: Any) -> Any:
+    """Make of a solver for one pose, J (m, n), one for a batch (..., m, n)."""
+
+    def batch(J: Array, e: Array) -> Array:
+        flat = zip(J.reshape(-1, *J.shape[-2:]), e.reshape(-1, e.shape[-1]), strict=True)
+        made = [solver(one, error) for one, error in flat]
+        return np.reshape(made, (*J.shape[:-2], J.shape[-1]))
+
+    return batch
