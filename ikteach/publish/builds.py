@@ -157,7 +157,7 @@ def solution(key: str) -> str:
 
 
 def open_answers(chapter: str) -> dict[str, str]:
-    """Return {id of the cell that asks: answers} of a chapter, such as "07".
+    """Return a chapter's answers, {id of the cell that asks: text}.
 
     None where they are not, as in the installed package.
     """
