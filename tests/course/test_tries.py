@@ -19,21 +19,19 @@ ROOT = Path(__file__).parents[2]
 
 
 def cells() -> list[Any]:
-    """The cells that show what to try, each after the imports of its notebook."""
+    """The cells that show what to try.
+
+    The first of a notebook as it is, for whoever runs nothing before it; others after the imports.
+    """
     found = []
     for path in sorted((ROOT / "notebooks").glob("*.ipynb")):
         code = [c for c in nbformat.read(path, as_version=4).cells if c.cell_type == "code"]
-        imports = [
-            ast.unparse(node)
-            for cell in code
-            for node in ast.parse(cell.source).body
-            if isinstance(node, ast.Import | ast.ImportFrom)
-        ]
-        found += [
-            pytest.param("\n".join([*imports, cell.source]), id=f"{path.stem}:{cell.id}")
-            for cell in code
-            if "show_me(" in cell.source
-        ]
+        nodes = [node for cell in code for node in ast.parse(cell.source).body]
+        imports = [ast.unparse(n) for n in nodes if isinstance(n, ast.Import | ast.ImportFrom)]
+        shown = [cell for cell in code if "show_me(" in cell.source]
+        for i, cell in enumerate(shown):
+            source = "\n".join([*(imports if i else []), cell.source])
+            found.append(pytest.param(source, id=f"{path.stem}:{cell.id}"))
     return found
 
 
