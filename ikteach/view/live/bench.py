@@ -110,14 +110,14 @@ class Bench(Cell):
     def _laid_out(self, rows: list[widgets.Widget]) -> list[widgets.Widget]:
         """All parts: the controls above the picture, or beside the scene."""
         scene = self.scene
+        chart = [self._picture] if self._picture.png else []
         if scene is None:
             assert self.note is not None
-            return [*rows, self.status, self._picture, self.note.widget, self._below]
+            return [*rows, self.status, *chart, self.note.widget, self._below]
         scene.driver.on_page = self._seen
         scene.widget.layout.width = f"{scene.renderer.width}px"  # so that the panel has its place
         column = widgets.VBox(rows, layout=widgets.Layout(flex="1 1 380px", min_width="340px"))
         beside = widgets.HBox([scene.widget, column], layout=widgets.Layout(flex_flow="row wrap"))
-        chart = [self._picture] if self._picture.png else []
         return [beside, self.status, *chart, self._below]
 
 

@@ -33,6 +33,7 @@ def test_every_control_to_both_ends(bench):
         control.value = before
     assert len(drawn) == 6
     assert bench.still().alt == bench.words
+    assert bench._picture not in bench.children  # an image without a picture shows its words
     assert len(bench.still().png) > 5000
 
 
