@@ -92,23 +92,6 @@ def test_06_the_spine_moves_a_straight_arm_too():
     theta[:, [tree.index("elbow.l"), tree.index("elbow.r")]] = 0
     assert smallest(theta).min() > 1e-6
     assert np.median(smallest(theta)) == pytest.approx(0.04, abs=0.01)
-    J = jacobian(tree, forward(tree, tree.rest), hand)
-    for damping in (0.001, 0.1, 10.0):
-        assert not dls(J, np.array([-1.0, 0, 0]), damping=damping).any()
-
-
-def smallest(theta):
-    """σ₁₂ of the human at poses (..., 20)."""
-    tree, effectors = HUMAN
-    return np.linalg.svdvals(jacobian(tree, forward(tree, theta), effectors))[..., -1]
-
-
-def test_06_the_spine_moves_a_straight_arm_too():
-    tree = HUMAN.tree
-    theta = starts(tree, 1000, spread=0.4)[1:]
-    theta[:, [tree.index("elbow.l"), tree.index("elbow.r")]] = 0
-    assert smallest(theta).min() > 0.001
-    assert np.quantile(smallest(theta), [0.1, 0.9]) == pytest.approx([0.01, 0.06], abs=0.015)
     J = jacobian(tree, forward(tree, tree.rest), HUMAN.effectors)
     assert (np.linalg.svdvals(J) < 1e-9).sum() == 2
 
