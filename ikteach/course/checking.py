@@ -3,13 +3,14 @@
 A chapter's checkers are in `ikteach.course.exercises.chNN`. A checker is a function of the
 student's answer that returns when all is right and raises `WrongError` with a sentence when not:
 
-    @exercise("00.double", returns=(), hints=["Multiply by two."])
+    @exercise("00.double", returns=(), hints=["Which number?", "2x", "`return 2 * x`"])
     def double(answer):
         for x in (0.0, 1.5, -2.0):
-            expect(answer(x) == 2 * x, f"`{answer.call}` must be twice its argument.")
+            agree(answer(x), 2 * x, f"`{answer.call}` is {{found}}, and it must be {{wanted}}.")
 
 What every answer may do wrong (raise, return None, a NaN or a wrong shape, never end, change what
-it was given or what others use) is dealt with here, for all of them.
+it was given or what others use) is dealt with here, and every right form that it may have in
+`ikteach.course.forms`.
 """
 
 import copy
@@ -18,47 +19,59 @@ import importlib
 import linecache
 import re
 import traceback
-from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ikteach.course import record
 from ikteach.course.deadline import TooLongError, deadline
+from ikteach.course.forms import (
+    AnswerShape,
+    Form,
+    NotYetError,
+    WrongError,
+    in_brief,
+    kind,
+    listed,
+    of_form,
+    same,
+    type_name,
+)
+from ikteach.course.kept import Kept, kept
 from ikteach.course.notice import LOOK, Mood, box, paragraph
-from ikteach.course.untouched import Unpatched, restoring
+from ikteach.course.untouched import Unpatched, ipython, restoring
 from ikteach.files import bounded
 from ikteach.markup import Markup
 from ikteach.names import unknown
 
 NOT_YET = "Not yet"
 SECONDS = 5.0  # what a check may take in all
+DRAWING = 20.0  # [s] what a picture may take: matplotlib is loaded for the first one
 LONGEST_SENTENCE = 500  # letters of a sentence
 
-AnswerShape = tuple[int, ...]
-Returns = AnswerShape | type | Callable[..., AnswerShape] | None
+Returns = AnswerShape | Form | Callable[..., AnswerShape] | None
 
 
-class WrongError(Exception):
-    """A wrong answer; the message says how, in one sentence."""
-
-
-class NotYetError(Exception):
-    """No answer yet; the message may say more."""
-
-
-@dataclass(frozen=True)
+@dataclass
 class Verdict:
-    """The finding of a check, true if passed; perhaps a hint."""
+    """The finding of a check, true if passed; perhaps a hint.
+
+    A cell that ends with a verdict shows it. One that only asks whether it is true, as
+    `assert check(...)` does, would show nothing: a verdict that is false then says why by itself.
+    """
 
     key: str
     passed: bool
     sentence: str
     hint: str = ""
+    picture: Any = field(default=None, repr=False, compare=False)
+    told: bool = field(default=False, repr=False, compare=False)
 
     def __bool__(self) -> bool:
+        if not self.passed:
+            self.tell()
         return self.passed
 
     @property
@@ -66,15 +79,25 @@ class Verdict:
         """Choose how to set it; not begun is no failure."""
         return "good" if self.passed else "plain" if self.sentence.startswith(NOT_YET) else "bad"
 
+    def tell(self) -> None:
+        """Print it, unless it has been told already."""
+        if not self.told:
+            self.told = True
+            print(self)
+
     def __str__(self) -> str:
-        hint = f"\n  Hint: {self.hint}" if self.hint else ""
+        hint = f"\n  {self.hint}" if self.hint else ""
         return f"{LOOK[self.mood][0]} {self.sentence}{hint}"
 
     __repr__ = __str__
 
     def _repr_html_(self) -> str:
-        hint = Markup("<br><b>Hint:</b> {}").format(paragraph(self.hint)) if self.hint else ""
-        return box(self.mood, paragraph(self.sentence) + hint)
+        self.told = True
+        name, _, words = self.hint.partition(": ")
+        hint = Markup("<br><b>{}:</b> {}").format(name, paragraph(words)) if self.hint else ""
+        said = box(self.mood, paragraph(self.sentence) + hint)
+        drawn = self.picture._repr_html_() if self.picture is not None else ""
+        return Markup("{}{}").format(said, drawn)
 
 
 class Exercise(NamedTuple):
@@ -86,10 +109,10 @@ class Exercise(NamedTuple):
     returns: Returns
     value: bool
     seconds: float
+    drawn: Callable[[Any], Any] | None
 
 
 EXERCISES: dict[str, Exercise] = {}
-_failures: Counter[str] = Counter()  # in a row, per exercise
 
 
 def exercise(
@@ -99,19 +122,22 @@ def exercise(
     returns: Returns = None,
     value: bool = False,
     seconds: float = SECONDS,
+    drawn: Callable[[Any], Any] | None = None,
 ) -> Callable[[Callable[[Any], None]], Callable[[Any], None]]:
     """Register a checker for the exercise `key`, such as "01.column".
 
-    hints    given one after the other, one a failure
-    returns  what the student's function must return: a shape, () for one number; a type; a
-             function of the arguments that gives the shape; None leaves it to the checker. What
-             has a shape comes to the checker as a finite float array
+    hints    a question, a formula and a line of code; the next one comes when an answer fails
+             that is another than those before
+    returns  what the student's function must return: a shape, () for one number; a form of
+             `ikteach.course.forms`; a function of the arguments that gives the shape; None leaves
+             it to the checker. What has a shape comes to the checker as a finite float array
     value    True: the answer is a value and not a function; `returns` is then about the value
     seconds  what the check may take in all
+    drawn    gives a picture of an answer, shown under the verdict, or None
     """
 
     def register(checker: Callable[[Any], None]) -> Callable[[Any], None]:
-        EXERCISES[key] = Exercise(key, checker, hints, returns, value, seconds)
+        EXERCISES[key] = Exercise(key, checker, hints, returns, value, seconds, drawn)
         return checker
 
     return register
@@ -126,24 +152,46 @@ def expect(holds: Any, sentence: str) -> None:
 def check(key: str, answer: Any, *, strict: bool = False) -> Verdict:
     """Check whether `answer` solves the exercise `key`, in a sentence.
 
-    The answer is a function or a value. Each failure in a row gives the next hint. LookupError for
-    an unknown key. The verdict is true only if it is solved; `strict` raises AssertionError with
-    the sentence if not, for graders that go by what a cell raises.
+    The answer is a function or a value. LookupError for an unknown key. The verdict is true only
+    if it is solved: `assert check("01.column", column)` is a test, also where there is no page to
+    show it. `strict` raises AssertionError with the sentence. Each new wrong answer gets the next
+    hint. What was answered is recorded with its source, beside the notebook.
     """
-    verdict = judge(find(key), answer)
-    if verdict.mood == "bad":
-        hints = EXERCISES[key].hints
-        hint = hints[min(_failures[key], len(hints) - 1)] if hints else ""
-        _failures[key] += 1
-        verdict = Verdict(key, False, verdict.sentence, hint)
-    elif verdict.passed:
-        _failures.pop(key, None)
-    fields = {"passed": verdict.passed, "sentence": verdict.sentence}
-    trouble = record.store("verdicts", key, again=True, **fields)
-    verdict = Verdict(key, verdict.passed, f"{verdict.sentence} {trouble}".strip(), verdict.hint)
-    if strict and not verdict:
+    task = find(key)
+    verdict, written = judge(task, answer), kept(answer)
+    known = record.entry("verdicts", key)
+    verdict.picture = None if verdict.mood == "plain" else _picture(task, answer)
+    verdict.hint, seen = _hint(task, verdict, written, known)
+    trouble = record.store(
+        "verdicts",
+        key,
+        again=True,
+        passed=verdict.passed,
+        sentence=verdict.sentence,
+        source=written.source,
+        sha256=written.sha256,
+        seen=seen,
+    )
+    verdict.sentence = f"{verdict.sentence} {trouble}".strip()
+    if strict and not verdict.passed:
         raise AssertionError(str(verdict))
+    if ipython() is None:  # no cell shows it
+        verdict.tell()
     return verdict
+
+
+def _hint(
+    task: Exercise, verdict: Verdict, written: Kept, known: record.Entry
+) -> tuple[str, list[str]]:
+    """Choose the hint, and the marks of the answers that were given one."""
+    before = known.get("seen")
+    seen = [str(one) for one in before] if isinstance(before, list) else []
+    if verdict.mood != "bad" or not task.hints:
+        return "", [] if verdict.passed else seen
+    if written.mark not in seen and len(seen) < len(task.hints):
+        seen.append(written.mark)
+    level = min(len(seen), len(task.hints))
+    return f"Hint {level} of {len(task.hints)}: {task.hints[level - 1]}", seen
 
 
 def find(key: str) -> Exercise:
@@ -162,26 +210,37 @@ def find(key: str) -> Exercise:
 def judge(task: Exercise, answer: Any) -> Verdict:
     """Judge an answer, without hints and without recording it."""
     name = _name(answer, task.key.partition(".")[2])
-
-    def verdict(passed: bool, sentence: str) -> Verdict:
-        return Verdict(task.key, passed, bounded(" ".join(sentence.split()), LONGEST_SENTENCE))
-
+    passed = False
     try:
         with restoring(), deadline(task.seconds):
             if answer is None or answer is ...:
                 raise NotYetError
             task.checker(_value(task, answer) if task.value else _function(task, answer, name))
+        passed, sentence = True, f"`{name}` passes every check."
     except NotYetError as error:
-        return verdict(False, f"{NOT_YET}: {str(error) or 'write your answer first.'}")
+        sentence = f"{NOT_YET}: {str(error) or 'write your answer first.'}"
     except WrongError as wrong:
-        return verdict(False, str(wrong))
+        sentence = str(wrong)
     except TooLongError:
-        stopped = f"`{name}` was stopped after {task.seconds:g} seconds: does a loop in it end?"
-        return verdict(False, stopped)
-    except Exception as error:  # ours, and not the student's: they are not to be left without word
-        broken = f"The check itself failed ({_said(error)}); this is a mistake of the course, "
-        return verdict(False, broken + "unless your answer is of an odd kind.")
-    return verdict(True, f"`{name}` passes every check.")
+        sentence = f"`{name}` was stopped after {task.seconds:g} seconds: does a loop in it end?"
+    except BaseException as error:  # ours, or of an object that the answer gave
+        if isinstance(error, KeyboardInterrupt) and not _by_raise(error):
+            raise  # the student's own wish
+        sentence = f"The check itself failed ({_said(error)}); this is a mistake of the course, "
+        sentence += "unless your answer is of an odd kind."
+    short = bounded(" ".join(sentence.split()), LONGEST_SENTENCE)
+    return Verdict(task.key, passed, short)
+
+
+def _picture(task: Exercise, answer: Any) -> Any:
+    """Draw an answer, if it can be drawn."""
+    if task.drawn is None:
+        return None
+    try:
+        with restoring(), deadline(DRAWING):
+            return task.drawn(_function(task, answer, "answer"))
+    except (Exception, TooLongError):  # the verdict has said what is wrong with it
+        return None
 
 
 def _name(answer: Any, other: str) -> str:
@@ -208,7 +267,7 @@ class Answer:
 
     def __call__(self, *arguments: Any) -> Any:
         """Answer these arguments, which stay as they are."""
-        self.call = f"{self.name}({', '.join(map(_brief, arguments))})"
+        self.call = f"{self.name}({', '.join(map(in_brief, arguments))})"
         given = copy.deepcopy(arguments)
         try:
             result = self._run(given)
@@ -217,7 +276,7 @@ class Answer:
         except Exception as error:
             raise WrongError(f"`{self.call}` {_told(error)}") from None
         for i, (before, after) in enumerate(zip(arguments, given, strict=True), start=1):
-            if not _same(before, after):
+            if not same(before, after):
                 changed = f"`{self.name}` changed its argument {i}: work on a copy of it."
                 raise WrongError(changed)
         if result is None:
@@ -225,13 +284,13 @@ class Answer:
         if result is ...:
             raise NotYetError(f"`{self.name}` still returns `...`")
         wanted = self._returns
-        if not (wanted is None or isinstance(wanted, tuple | type)):
+        if callable(wanted):
             wanted = wanted(*arguments)
         return of_form(result, wanted, f"`{self.call}` returned")
 
     def error(self, *arguments: Any) -> Exception | None:
         """Return the error that the function raises, or None."""
-        self.call = f"{self.name}({', '.join(map(_brief, arguments))})"
+        self.call = f"{self.name}({', '.join(map(in_brief, arguments))})"
         try:
             result = self._run(copy.deepcopy(arguments))
         except (NotYetError, WrongError):
@@ -246,94 +305,32 @@ class Answer:
         """Call the function; raise of its exceptions errors and ours."""
         try:
             with Unpatched():
-                return self._function(*given)
+                return listed(self._function(*given))
         except NotImplementedError:
             raise NotYetError(f"`{self.name}` still says that it is not implemented.") from None
-        except (Exception, TooLongError):
+        except (Exception, TooLongError):  # also our own
             raise
         except SystemExit:
-            raise WrongError(f"`{self.name}` ended with exit(); use return.") from None
+            leaves = f"`{self.call}` ended with exit(), which may end the whole notebook"
+            raise WrongError(f"{leaves}: use `return`, or `raise` an error.") from None
         except BaseException as error:
             if isinstance(error, KeyboardInterrupt) and not _by_raise(error):
                 raise  # the student's own wish
             raise WrongError(f"`{self.call}` {_told(error)}") from None
 
 
-def _same(before: Any, after: Any) -> bool:
-    """Whether an argument is as it was; of arrays and lists of numbers this can be told."""
-    if isinstance(before, np.ndarray | list):
-        try:
-            return np.array_equal(np.asarray(before), np.asarray(after), equal_nan=True)
-        except Exception:  # it is no longer made of numbers
-            return False
-    return True
-
-
 def _function(task: Exercise, answer: Any, name: str) -> Answer:
     if not callable(answer):
         hint = f"check({task.key!r}, {name})"
-        raise WrongError(f"The check needs the function itself, `{hint}`, not {_kind(answer)}.")
+        raise WrongError(f"The check needs the function itself, `{hint}`, not {kind(answer)}.")
     return Answer(answer, name, task.returns)
 
 
 def _value(task: Exercise, answer: Any) -> Any:
     if callable(answer):
         raise WrongError("The check needs a value, not a function: call it first.")
-    return of_form(answer, task.returns, "Your answer is")
-
-
-def of_form(result: Any, wanted: Any, said: str) -> Any:
-    """Give `result` back if it is of the wanted form.
-
-    As a finite array where that is a shape; WrongError if it is not. `said` begins the sentence:
-    "`f(x)` returned".
-    """
-    if wanted is None:
-        return result
-    if isinstance(wanted, type):
-        kinds = {bool: (bool, np.bool_), str: (str,), int: (int, np.integer)}
-        if not isinstance(result, kinds.get(wanted, (wanted,))):
-            raise WrongError(f"{said} {_kind(result)}, where {_a(wanted.__name__)} is wanted.")
-        return result
-    form = f"an array of shape {wanted}" if wanted else "one number"
-    try:
-        array = np.asarray(None if isinstance(result, str) else result)  # a text may be long
-        if array.dtype.kind not in "biuf":  # text, complex numbers, objects
-            raise TypeError
-    except Exception:  # whatever an object of the student's raises when it is to be an array
-        raise WrongError(f"{said} {_kind(result)}, where {form} is wanted.") from None
-    if array.shape != wanted:
-        shape = f"an array of shape {array.shape}" if array.shape else "one number"
-        raise WrongError(f"{said} {shape}, where {form} is wanted.")
-    array = array.astype(float)
-    if np.isnan(array).any():
-        raise WrongError(f"{said} NaN, which is no number: what was divided by zero?")
-    if np.isinf(array).any():
-        raise WrongError(f"{said} an infinite number: what was divided by zero?")
-    return array
-
-
-def _brief(value: Any) -> str:
-    """Tell a value in few words, for a sentence."""
-    if isinstance(value, np.ndarray) and value.size > 4:
-        return f"array {value.shape}"
-    if isinstance(value, np.ndarray | float):
-        return np.array2string(np.asarray(value), precision=3, separator=", ", threshold=6)
-    text = repr(value)
-    return text if len(text) <= 40 else _kind(value)
-
-
-def _kind(value: Any) -> str:
-    return _a(_type(value))
-
-
-def _type(value: Any) -> str:
-    """Name its type, the true one, whatever its class says."""
-    return bounded(type.__dict__["__name__"].__get__(type(value)) or "nameless type", 60)
-
-
-def _a(name: str) -> str:
-    return f"{'an' if name[0] in 'aeiouAEIOU' else 'a'} {name}"
+    wanted = None if callable(task.returns) else task.returns
+    return of_form(answer, wanted, "Your answer is")
 
 
 def _said(error: BaseException) -> str:
@@ -342,7 +339,7 @@ def _said(error: BaseException) -> str:
         text = str(error).strip()
     except Exception:
         text = ""
-    return f"{_type(error)}: {bounded((text or 'without a word').splitlines()[0], 200)}"
+    return f"{type_name(error)}: {bounded((text or 'without a word').splitlines()[0], 200)}"
 
 
 def _told(error: BaseException) -> str:

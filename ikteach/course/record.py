@@ -22,6 +22,7 @@ LARGEST_ANSWERS = 50 * 2**20  # bytes of a file of answers; an exported log may 
 MOST_ANSWERS = 5000  # answers of a kind
 FIELDS = 100  # of an answer
 LONGEST_FIELD = 2000  # letters of a field
+LONGEST_SOURCE_FIELD = 20_000  # letters of an answer's source, kept whole or not at all
 
 Entry = dict[str, Any]
 Answers = dict[str, dict[str, Entry]]  # kind (one of ANSWER_KINDS) -> key -> entry
@@ -137,15 +138,16 @@ def _add(answers: Answers, kind: str, key: str, fields: Entry, again: bool) -> E
     known = group.get(key, {})
     tries = {"tries": known.get("tries", 0) + 1} if again else {}
     now = datetime.now(UTC).isoformat(timespec="seconds")
-    new = {name: _brief(files.jsonable(value)) for name, value in fields.items()}
+    new = {name: _brief(name, files.jsonable(value)) for name, value in fields.items()}
     group[key] = known | new | tries | {"at": now}
     return group[key]
 
 
-def _brief(value: Any) -> Any:
+def _brief(name: str, value: Any) -> Any:
     """Shorten what a file written anew at each answer cannot hold."""
     text = value if isinstance(value, str) else json.dumps(value)
-    return value if len(text) <= LONGEST_FIELD else files.bounded(text, LONGEST_FIELD)
+    most = LONGEST_SOURCE_FIELD if name == "source" else LONGEST_FIELD
+    return value if len(text) <= most else files.bounded(text, most)
 
 
 def _read(folder: Path, *, set_aside: bool = False) -> tuple[Answers, str]:

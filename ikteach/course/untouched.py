@@ -66,6 +66,8 @@ class Unpatched:
         self._inside.enter_context(warnings.catch_warnings())
         warnings.simplefilter("ignore")
         self._names = [(vars(module), dict(vars(module))) for module in MODULES]
+        if (shell := ipython()) is not None:
+            shell.ask_exit = _leave  # exit() would end the kernel
 
     @shielded
     def __exit__(self, *_: object) -> None:
@@ -73,7 +75,19 @@ class Unpatched:
             for name, value in before.items():
                 if now.get(name) is not value:
                     now[name] = value
+        if (shell := ipython()) is not None:
+            vars(shell).pop("ask_exit", None)
         self._inside.close()
+
+
+def ipython() -> Any:
+    """Return the IPython in which this runs, or None."""
+    module = sys.modules.get("IPython")
+    return module.get_ipython() if module is not None else None
+
+
+def _leave() -> None:
+    raise SystemExit
 
 
 class Bounded(io.TextIOBase):

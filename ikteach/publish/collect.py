@@ -20,6 +20,7 @@ from ikteach.course.record import ANSWER_KINDS, LARGEST_ANSWERS, valid
 from ikteach.files import bounded, read_json, whole_characters, write_whole
 from ikteach.publish.parser import Parser, RefusedError
 
+UNTOLD = {"source", "seen"}  # of a verdict: text to judge it again by, and marks for hints
 NAMES = dict(zip(ANSWER_KINDS, ("prediction", "exercise", "quiz"), strict=True))
 SKIPPED = 3  # the exit code when all went well, but for files that were left out
 COLUMNS = 200  # of a log, and of the table
@@ -178,7 +179,8 @@ def _files(folder: Path) -> Iterator[tuple[Path, str]]:
 def _rows(content: dict[str, Any]) -> Iterator[dict[str, Any]]:
     for kind in ANSWER_KINDS:
         for key, entry in content.get(kind, {}).items():
-            fields = {bounded(name, 60): _cell(value) for name, value in entry.items()}
+            told = ((name, value) for name, value in entry.items() if name not in UNTOLD)
+            fields = {bounded(name, 60): _cell(value) for name, value in told}
             yield fields | {"kind": NAMES[kind], "key": key, "right": _right(kind, entry)}
 
 

@@ -1,20 +1,40 @@
 """The machinery of the checks: whatever an answer does, a sentence comes of it."""
 
 import contextlib
+import hashlib
+import itertools
 import json
+import linecache
+import os
+import re
 import subprocess
 import sys
 import threading
 import time
+from decimal import Decimal
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 
+from ikteach import solvers
 from ikteach.course import check, checking
-from ikteach.course.checking import EXERCISES, Answer, WrongError, exercise, expect
+from ikteach.course.checking import EXERCISES, Answer, exercise, expect, find, judge
 from ikteach.course.deadline import TooLongError, Tracer, deadline
+from ikteach.course.forms import (
+    NAME,
+    NAMES,
+    TRUTH,
+    WrongError,
+    agree,
+    numbers_apart,
+    of_form,
+    parts,
+)
+from ikteach.course.kept import kept
 
 
 @pytest.fixture(autouse=True)
@@ -28,7 +48,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def registered() -> Any:
     """Exercises of a chapter that is none."""
 
-    @exercise("xx.double", returns=(2,), hints=["first", "second"], seconds=0.3)
+    @exercise("xx.double", returns=(2,), hints=["first", "second", "third"], seconds=0.3)
     def double(answer: Answer) -> None:
         for x in (np.array([0.0, 1.0]), np.array([-2.0, 3.5])):
             expect(np.allclose(answer(x), 2 * x), f"`{answer.call}` must be twice its argument.")
@@ -37,7 +57,7 @@ def registered() -> Any:
     def same(answer: Answer) -> None:
         expect(answer(np.zeros((2, 3))) == 0, "It must be zero.")
 
-    @exercise("xx.even", returns=bool)
+    @exercise("xx.even", returns=TRUTH)
     def even(answer: Answer) -> None:
         expect(answer(2) and not answer(3), "2 is even and 3 is not.")
 
@@ -139,7 +159,7 @@ def test_wrong_answers_have_their_sentence(answer: Any, words: str) -> None:
 
 
 def test_other_kinds_of_answer() -> None:
-    assert "returned an int, where a bool is wanted" in said("xx.even", lambda x: 1)
+    assert "returned 3, where True or False is wanted" in said("xx.even", lambda x: 3)
     assert "2 is even" in said("xx.even", lambda x: True)
     assert "must be refused" in said("xx.refuse", lambda x: x)
     assert check("xx.refuse", lambda x: int("no")).passed
@@ -152,14 +172,289 @@ def test_other_kinds_of_answer() -> None:
         check("xx.doubel", stub)
 
 
-def test_hints_come_one_a_failure_and_begin_again() -> None:
-    check("xx.double", lambda x: 2 * x)
-    hints = [check("xx.double", lambda x: x).hint for _ in range(3)]
-    assert hints == ["first", "second", "second"]
-    assert "Hint: second" in str(check("xx.double", lambda x: x))
-    assert "<b>Hint:</b> second" in check("xx.double", lambda x: x)._repr_html_()
-    check("xx.double", lambda x: 2 * x)
-    assert check("xx.double", lambda x: x).hint == "first"
+def cell(source: str) -> Any:
+    """The function `f` of a cell, with its lines where `inspect` looks for them."""
+    name = f"<cell {len(linecache.cache)}>"
+    linecache.cache[name] = (len(source), None, source.splitlines(True), name)
+    names: dict[str, Any] = {"__name__": "__main__", "np": np}
+    exec(compile(source, name, "exec"), names)
+    return names["f"]
+
+
+def test_the_next_hint_comes_with_another_answer() -> None:
+    one = "def f(x):\n    return x"
+    same = [
+        one,
+        "def f(x):\n    # as before\n    return  (x)\n",
+        'def f(x):\n    """So."""\n    return x',
+    ]
+    hints = [check("xx.double", cell(source)).hint for source in same]
+    assert hints == ["Hint 1 of 3: first"] * 3
+    others = [f"def f(x):\n    return x + {n}" for n in (1, 1, 2, 3)]
+    hints = [check("xx.double", cell(source)).hint[:6] for source in others]
+    assert hints == ["Hint 2", "Hint 2", "Hint 3", "Hint 3"]
+    assert check("xx.double", cell(one)).hint == "Hint 3 of 3: third"
+    assert "\n  Hint 3 of 3: third" in str(check("xx.double", cell(one)))
+    assert "<b>Hint 3 of 3:</b> third" in check("xx.double", cell(one))._repr_html_()
+    assert check("xx.double", stub).hint == ""  # not begun is no failure
+    assert check("xx.double", lambda x: 2 * x).hint == ""
+    assert check("xx.double", cell(one)).hint == "Hint 1 of 3: first"  # begins again
+
+
+def test_hints_need_no_memory_of_this_session(folder: Path) -> None:
+    """A kernel that starts again goes on from the file."""
+    code = "from ikteach.course import check; check('04.projector', {})"
+    said = []
+    for n in (1, 1, 2):
+        done = [sys.executable, "-c", code.format(n)]
+        said.append(subprocess.run(done, capture_output=True, text=True, check=True).stdout)
+    assert [text.partition("Hint ")[2][:1] for text in said] == ["1", "1", "2"]
+
+
+# ---- what is kept of an answer
+
+
+def test_the_source_is_kept_and_answers_alike(folder: Path) -> None:
+    source = "K = 2\nA = np.eye(2)\ndef twice(x):\n    return K * A @ x\n"
+    source += "def f(x):\n    return twice(x)\n"
+    assert check("xx.double", cell(source))
+    entry = json.loads((folder / "predictions.json").read_text())["verdicts"]["xx.double"]
+    names: dict[str, Any] = {}
+    exec(entry["source"], names)  # as a grader would, in a process of its own
+    assert judge(find("xx.double"), names["answer"]).passed
+    assert entry["sha256"] == hashlib.sha256(entry["source"].encode()).hexdigest()
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "f = lambda x: 2 * x",
+        "g = (lambda x: x, lambda x: 2 * x)\nf = g[1]",
+        "def make(k):\n    def inner(x):\n        return k * x\n    return inner\nf = make(2)",
+        "def double(x, k=2):\n    return k * x\nf = double",
+        "times = {'k': [2.0, (1, None)]}\ndef f(x):\n    return times['k'][0] * x",
+        "from numpy import multiply\ndef f(x):\n    return multiply(x, 2)",
+        "def f(x):\n    return x + x if len(x) else f(x)",
+    ],
+)
+def test_a_kept_source_stands_alone(source: str) -> None:
+    names: dict[str, Any] = {}
+    exec(kept(cell(source)).source, names)
+    np.testing.assert_array_equal(names["answer"](np.array([1.0, 2.5])), [2, 5])
+
+
+@pytest.mark.parametrize(
+    "value", [3, 2.5, float("inf"), "sdls", {"foot.l": "sdls"}, [1, (2, None)]]
+)
+def test_a_value_is_kept(value: Any) -> None:
+    names: dict[str, Any] = {}
+    exec(kept(value).source, names)
+    assert names["answer"] == value
+
+
+def test_what_cannot_be_kept_is_told_apart_all_the_same(folder: Path) -> None:
+    long = cell("def f(x):\n" + "    x = x + 1\n" * 5000 + "    return x")
+    for odd in (long, NoArray(), Odd(3), int, np.zeros(10**6), type("C", (), {})()):
+        assert len(kept(odd).source) < 100
+        assert kept(odd).mark
+    assert not check("xx.double", long)
+    assert (folder / "predictions.json").stat().st_size < 5000
+
+
+def test_to_keep_or_to_read_runs_nothing(folder: Path) -> None:
+    ran: list[int] = []
+    source = "def f(x, y=[]):\n    ran.append(1)\n    return 2 * x\n"
+    function = cell(source)
+    function.__globals__["ran"] = ran
+    assert "ran.append" in kept(function).source
+    hostile = {"verdicts": {"xx.double": {"source": "raise SystemExit", "seen": "x", "tries": 1}}}
+    (folder / "predictions.json").write_text(json.dumps(hostile))
+    assert check("xx.double", lambda x: 2 * x)
+    assert ran == []
+
+
+# ---- the one door of answers
+
+
+ONE = [
+    7,
+    7.0,
+    np.float32(7),
+    np.int8(7),
+    [7],
+    (7,),
+    np.array([[7]]),
+    Fraction(7),
+    Decimal(7),
+    pd.Series([7]),
+    (x for x in [7]),
+    7 + 0j,
+    np.array(7),
+    range(7, 8),
+]
+
+
+@pytest.mark.parametrize("value", ONE, ids=lambda value: type(value).__name__)
+def test_one_number_in_any_form(value: Any) -> None:
+    found = of_form(value, (), "It is")
+    assert (found.shape, float(found)) == ((), 7.0)
+
+
+TWO = [
+    [1, 2],
+    (1.0, 2),
+    np.array([1, 2], np.float32),
+    np.array([[1], [2]]),
+    np.array([[1, 2]]),
+    pd.Series([1, 2]),
+    pd.Index([1, 2]),
+    iter([1, 2]),
+    map(float, "12"),
+    range(1, 3),
+    [np.array([1.0]), 2],
+    [Fraction(1), Decimal(2)],
+    np.array([1, 2], object),
+    np.ma.array([1, 2]),
+]
+
+
+@pytest.mark.parametrize("value", TWO, ids=lambda value: type(value).__name__)
+def test_two_numbers_in_any_form(value: Any) -> None:
+    found = of_form(value, (2,), "It is")
+    assert found.tolist() == [1, 2]
+    assert found.dtype == float
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        ([1, 2, 3], "an array of shape (3,), where an array of shape (2,)"),
+        ("12", "a str"),
+        ({1: 2, 2: 3}, "a dict"),
+        ({1, 2}, "a set"),
+        (["1", "2"], "a list"),
+        ([1j, 2], "a list"),
+        ([None, 1], "a list"),
+        (itertools.count(), "has no end"),
+        (b"12", "a bytes"),
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_what_is_no_two_numbers(value: Any, words: str) -> None:
+    with pytest.raises(WrongError, match=re.escape(words)):
+        of_form(value, (2,), "It is")
+
+
+def test_truths_names_and_parts() -> None:
+    for value in (True, np.bool_(True), 1, 1.0, np.array([True]), np.array(1), pd.Series([True])):
+        assert of_form(value, TRUTH, "It is") is True
+    for value in (2, "yes", None, [True, False], 0.5, object()):
+        with pytest.raises(WrongError, match="where True or False is wanted"):
+            of_form(value, TRUTH, "It is")
+    for value in ("dls", np.str_("dls"), " dls ", solvers.dls, np.array(["dls"])):
+        assert of_form(value, NAME, "It is") == "dls"
+    both = [
+        ["dls", "sdls"],
+        ("dls", "sdls"),
+        pd.Index(["dls", "sdls"]),
+        np.array(["dls", "sdls"]),
+        (solvers.dls, solvers.sdls),
+        iter(["dls", "sdls"]),
+        {"dls": 1, "sdls": 2}.keys(),
+        pd.Categorical(["dls", "sdls"]),
+    ]
+    for names in both:
+        assert of_form(names, NAMES, "It is") == ["dls", "sdls"]
+    for odd in ("dls", {"dls": 1}, 3, [3], pd.Series([0.1, 0.2]), pd.DataFrame({"dls": [1]})):
+        with pytest.raises(WrongError, match="where a list of names is wanted"):
+            of_form(odd, NAMES, "It is")
+    pair = parts("a log", "a winner")
+    for two in ([1, 2], (1, 2), iter([1, 2])):
+        assert of_form(two, pair, "It is") == [1, 2]
+    with pytest.raises(WrongError, match=r"a log and a winner \(in one list or tuple\) is wanted"):
+        of_form((1, 2, 3), pair, "It is")
+
+
+@pytest.mark.parametrize(
+    ("a", "b"),
+    [(1.0, 1.0001), (1e-9, 2e-9), (0.123456789, 0.123456788), (3.0, -3.0), (1e9, 1e9 + 1)],
+)
+def test_numbers_that_differ_differ_as_printed(a: float, b: float) -> None:
+    one, other = numbers_apart(a, b)
+    assert one != other
+    assert len(set(numbers_apart([0.0, a], [0.0, b]))) == 2
+    with pytest.raises(WrongError, match=f"^{re.escape(one)} not {re.escape(other)}$"):
+        agree(a, b, "{found} not {wanted}", near=1e-12)
+    agree(a, a, "")
+
+
+# ---- where there is no page
+
+
+def test_a_script_is_told_in_plain_words(folder: Path) -> None:
+    code = (
+        "from ikteach.course import check\nimport numpy as np\n"
+        "check('01.column', lambda v, p, s: np.cross(s - p, v))\n"
+        "assert check('01.column', lambda v, p, s: np.cross(v, s - p))\n"
+        "assert check('01.column', lambda v, p, s: np.cross(v, s)), 'told'\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.stdout.count("✗ ") == 2
+    assert done.stdout.count("✓ `column` passes every check.") == 1
+    assert "Hint 1 of 3: Which two directions" in done.stdout
+    assert "AssertionError: told" in done.stderr
+
+
+def test_an_assertion_in_a_cell_says_why(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(checking, "ipython", object)
+    verdict = check("xx.double", lambda x: x)
+    assert capsys.readouterr().out == ""  # the cell shows it
+    with pytest.raises(AssertionError):
+        assert verdict
+    assert "must be twice its argument" in capsys.readouterr().out
+    assert not verdict
+    assert capsys.readouterr().out == ""  # once is enough
+    assert check("xx.double", lambda x: 2 * x)
+    assert capsys.readouterr().out == ""
+
+
+CELLS = """
+from IPython.core.interactiveshell import InteractiveShell
+shell = InteractiveShell.instance()
+for cell in [
+    "from ikteach.course import check; import numpy as np",
+    "def column(v, p, s):\\n    exit()\\nverdict = check('01.column', column)",
+    "assert verdict",
+    "assert check('01.column', lambda v, p, s: np.cross(v, s - p))",
+    "check('01.column', lambda v, p, s: np.cross(v, s - p))",
+    "print('alive')",
+]:
+    shell.run_cell(cell)
+assert "ask_exit" not in vars(shell)
+"""
+
+
+def test_in_the_cells_of_a_grader(folder: Path) -> None:
+    """As nbgrader and Otter run them: an assertion is a test, and exit() ends nothing."""
+    done = subprocess.run([sys.executable, "-c", CELLS], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "ended with exit()" in done.stdout
+    assert "AssertionError" in done.stdout
+    assert done.stdout.count("✓ `column` passes every check.") == 1  # the cell that ends with it
+    assert done.stdout.rstrip().endswith("alive")
+
+
+def test_where_nothing_can_be_written_a_check_is_a_test_all_the_same(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def denied(*_: Any, **__: Any) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(os, "open", denied)
+    assert check("xx.double", lambda x: 2 * x)
+    assert not check("xx.double", lambda x: x)
 
 
 def test_verdicts_are_recorded(folder: Path) -> None:
@@ -264,7 +559,7 @@ def test_a_verdict_is_true_only_if_passed() -> None:
     assert check("xx.double", lambda x: 2 * x, strict=True).passed
     with pytest.raises(AssertionError, match="must be twice its argument") as raised:
         check("xx.double", lambda x: x, strict=True)
-    assert "Hint:" in str(raised.value)
+    assert "Hint 1 of 3: first" in str(raised.value)
     with pytest.raises(AssertionError, match="Not yet"):
         check("xx.double", stub, strict=True)
 
@@ -384,7 +679,7 @@ def test_an_interrupt_by_the_student_goes_through() -> None:
         (np.broadcast_to(0.0, (10**6, 10**6)), "an array of shape (1000000, 1000000)"),
         ("x" * 10**7, "returned a str"),
         (Odd(3), "returned an Odd"),
-        ((x for x in ()), "returned a generator"),
+        ((x for x in ()), "returned an array of shape (0,)"),
     ],
     ids=["no-array", "meta", "nameless", "giant", "long", "callable", "generator"],
 )  # fmt: skip
@@ -519,6 +814,7 @@ def test_megabytes_that_an_answer_prints_are_left_out(capsys: pytest.CaptureFixt
     assert check("xx.double", prints)
     out, err = capsys.readouterr()
     assert out.startswith("y" * 100)
-    for text in (out, err):
+    assert "✓ `prints` passes every check." in out
+    for text in (out.partition("✓")[0], err):
         assert 10_000 <= len(text) < 10_100
         assert text.endswith("left out)\n")

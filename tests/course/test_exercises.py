@@ -2,6 +2,7 @@
 
 import ast
 import importlib
+import re
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,8 @@ import pytest
 
 from ikteach.course.checking import EXERCISES, check, find, judge
 from ikteach.publish import builds
+from tests.course.answers.right import RIGHT
+from tests.course.answers.unseen import UNSEEN
 
 ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "ikteach" / "course"
@@ -64,6 +67,33 @@ def test_exercises_are_those_of_the_notebooks() -> None:
 def test_the_solution_passes(key: str) -> None:
     verdict = check(key, answer(key))
     assert verdict.passed, verdict
+
+
+@pytest.mark.parametrize(
+    "i", range(len(RIGHT)), ids=[f"{key}-{i}" for i, (key, _) in enumerate(RIGHT)]
+)
+def test_a_right_answer_in_another_form_passes(i: int) -> None:
+    key, answer = RIGHT[i]
+    assert judge(find(key), answer).passed, judge(find(key), answer)
+
+
+@pytest.mark.parametrize(
+    "i", range(len(UNSEEN)), ids=[f"{k}-{i}" for i, (k, _) in enumerate(UNSEEN)]
+)
+def test_a_wrong_answer_of_another_kind_is_refused(i: int) -> None:
+    key, answer = UNSEEN[i]
+    sentence = judge(find(key), answer).sentence
+    assert "passes every check" not in sentence
+    assert "check itself failed" not in sentence, sentence
+    assert re.search(r"\d|is wanted|is no|must|not an? ", sentence), sentence
+
+
+def test_hints_are_a_question_a_formula_and_code() -> None:
+    for key in OURS:
+        question, formula, code = EXERCISES[key].hints
+        assert question.rstrip(".").endswith("?") or "?" in question, key
+        assert "`" in code, key
+        assert len({question, formula, code}) == 3
 
 
 @pytest.mark.parametrize(("key", "i"), WRONG)

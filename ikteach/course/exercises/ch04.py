@@ -1,5 +1,6 @@
 """Chapter 4. The pseudoinverse: what the null space is, and a cap that spares the feet."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -7,7 +8,21 @@ import numpy as np
 from ikteach.arrays import Array
 from ikteach.body import figures
 from ikteach.course.checking import Answer, exercise, expect
+from ikteach.course.forms import agree, numbers_apart
 from ikteach.motion import gait, track
+
+
+def ranked() -> Iterator[tuple[Array, int]]:
+    """J and its rank: wide, tall, with a rank that is lost, nearly lost, and in other units."""
+    rng = np.random.default_rng(4)
+    for shape in ((3, 7), (6, 4), (1, 3), (5, 5)):
+        yield rng.normal(size=shape), min(shape)
+    lost = rng.integers(-3, 4, (6, 2)) @ rng.integers(-3, 4, (2, 9)).astype(float)
+    yield lost, 2
+    yield 1e-6 * lost, 2
+    yield 1e-6 * rng.normal(size=(3, 7)), 3
+    yield np.diag([1.0, 3e-3, 1.0]) @ rng.normal(size=(3, 6)), 3
+    yield np.zeros((3, 4)), 0
 
 
 @exercise(
@@ -15,68 +30,101 @@ from ikteach.motion import gait, track
     returns=lambda J: (J.shape[1], J.shape[1]),
     hints=[
         "J⁺J keeps the part of Δθ that moves the effectors. What keeps the rest?",
-        "P = I − J⁺J, with `np.linalg.pinv(J)` for J⁺: JJᵀ has no inverse where J lost a rank.",
+        "P = I − J⁺J; J⁺ is not Jᵀ(JJᵀ)⁻¹ where J lost a rank, for JJᵀ has no inverse there.",
+        "`return np.eye(J.shape[1]) - np.linalg.pinv(J) @ J`",
     ],
 )
 def projector(answer: Answer) -> None:
-    rng = np.random.default_rng(4)
-    wide, tall = rng.normal(size=(3, 7)), rng.normal(size=(6, 4))
-    lost = rng.normal(size=(6, 2)) @ rng.normal(size=(2, 9))
-    for J, rank in ((wide, 3), (tall, 4), (lost, 2), (np.zeros((3, 4)), 0)):
+    for J, rank in ranked():
         P = answer(J)
-        n = J.shape[1]
+        n, size = J.shape[1], float(abs(J).max()) or 1.0
+        about = f"For a J of {J.shape[0]} × {n} and rank {rank}"
+        for name, what, meaning in (
+            ("JP", J @ P / size, "what P lets through moves effectors"),
+            ("P² − P", P @ P - P, "P² is not P, and to project twice must change nothing"),
+            ("P − Pᵀ", P - P.T, "P is not symmetric: it does not project at right angles"),
+        ):
+            largest = float(abs(what).max())
+            expect(
+                largest < 1e-4,
+                f"{about} {name} is not zero, its largest entry is {largest:.2g}: {meaning}.",
+            )
         expect(
-            np.allclose(J @ P, 0, atol=1e-8), "JP is not zero: what P lets through moves effectors."
+            abs(np.trace(P) - (n - rank)) < 1e-3,
+            f"{about} the trace of P is {np.trace(P):.4g}; it counts the free directions, and "
+            f"{n - rank} of {n} are free.",
         )
-        expect(
-            np.allclose(P @ P, P, atol=1e-8), "P² is not P: to project twice must change nothing."
-        )
-        expect(
-            np.allclose(P, P.T, atol=1e-8),
-            "P is not symmetric: it does not project at right angles.",
-        )
-        expect(
-            abs(np.trace(P) - (n - rank)) < 1e-6,
-            f"The trace of P is {np.trace(P):.2f}; it counts the free directions, and J of rank "
-            f"{rank} leaves {n - rank} of {n}.",
-        )
+
+
+def uncapped() -> Iterator[tuple[Array, float, Array]]:
+    """dtheta, max_step and chains: numbers in any order, peaks of either sign, on the bound too."""
+    rng = np.random.default_rng(5)
+    layouts = [[2, 2, 0, 0, 0, 1, 1], [7, -1, 7, 3, -1, 3, 7], [5], [1, 1, 1], [0, 1, 2, 0, 1, 2]]
+    for _ in range(8):
+        layouts.append(list(rng.choice([-2, 0, 3, 11], rng.integers(2, 12))))
+    for layout in layouts:
+        for size in (0.01, 1.0, 50.0):
+            chains, bound = np.array(layout), float(rng.choice([0.05, 0.1, 0.7]))
+            dtheta = size * rng.uniform(-1, 1, len(chains)) * 10.0 ** rng.integers(-1, 2)
+            yield dtheta, bound, chains
+            dtheta = dtheta.copy()
+            dtheta[chains == chains[0]] *= bound / abs(dtheta[chains == chains[0]]).max()
+            yield dtheta, bound, chains  # a chain just on the bound
+            yield np.where(chains == chains[-1], 0, dtheta), bound, chains  # one that stands
+
+
+def per_chain(dtheta: Array, bound: float, chains: Array) -> Array:
+    """The joints of each chain, shortened together."""
+    done = dtheta.copy()
+    for chain in set(chains.tolist()):
+        peak = abs(dtheta[chains == chain]).max()
+        done[chains == chain] *= bound / peak if peak > bound else 1
+    return done
 
 
 @exercise(
     "04.cap",
     returns=lambda dtheta, max_step, chains: dtheta.shape,
     hints=[
-        "For each number in `np.unique(chains)`: which joints have it, and their largest |Δθ|?",
+        "Which joints decide by how much the others of their chain are shortened?",
         "Multiply the joints of one chain by min(1, max_step / their largest |Δθ|).",
+        "`for chain in np.unique(chains): ours = chains == chain; peak = abs(dtheta[ours]).max()`",
     ],
     seconds=20,
 )
 def cap(answer: Answer) -> None:
-    rng = np.random.default_rng(5)
-    chains = np.array([2, 2, 0, 0, 0, 1, 1])
-    bound = 0.1
-    for size in ([5, 5, 0.01, 0.01, 0.01, 3, 3], [0.01] * 7, [1] * 7):
-        dtheta = rng.uniform(0.2, 1, 7) * rng.choice([-1, 1], 7) * size
-        dtheta[0] = -abs(dtheta[0])
-        done = answer(dtheta, bound, chains)
-        for chain in range(3):
-            before, after = dtheta[chains == chain], done[chains == chain]
-            peak = abs(before).max()
-            expect(abs(after).max() <= bound * (1 + 1e-9), "A joint turns further than max_step.")
+    for dtheta, bound, chains in uncapped():
+        done, wanted = answer(dtheta, bound, chains), per_chain(dtheta, bound, chains)
+        i = int((abs(done - wanted) / (abs(wanted) + 1e-9)).argmax())
+        ours = chains == chains[i]
+        was, now, right = numbers_apart(dtheta[i], done[i], wanted[i])
+        peak = abs(dtheta[ours]).max()
+        where = f"With max_step {bound:g} and chains {chains.tolist()}, "
+        f"joint {i + 1} was to turn by {was}"
+        expect(
+            abs(done).max() <= bound * (1 + 1e-4),
+            f"{where}: a joint turns further than max_step, by {abs(done).max():.5g}.",
+        )
+        if abs(done[ours]).max() > 0:
+            share = done[ours] * peak - dtheta[ours] * abs(done[ours]).max()
             expect(
-                np.allclose(after * peak, before * abs(after).max(), atol=1e-12),
-                "The joints of a chain must shrink by the same share, or the hand goes elsewhere.",
+                abs(share).max() <= 1e-4 * peak * bound,
+                f"{where}, you say {now}, and {right} is right: the joints "
+                f"of a chain shrink by the "
+                "same share, or the hand goes elsewhere.",
             )
-            wanted = min(peak, bound)
-            expect(
-                abs(abs(after).max() - wanted) < 1e-9,
-                "A chain that keeps within max_step, or can just meet it, is shortened too much "
-                "or made longer.",
-            )
-    expect(answer(np.zeros(7), bound, chains).max() == 0, "A step of zero must stay zero.")
+        expect(
+            np.allclose(done, wanted, rtol=1e-4, atol=1e-7 * bound),
+            f"{where}, and the largest turn of its chain is {peak:.4g}: you say {now}, and {right} "
+            f"is right. It is "
+            f"{'shortened too much' if abs(done[i]) < abs(wanted[i]) else 'made longer'}.",
+        )
+    agree(answer(np.zeros(7), 0.1, np.arange(7)), np.zeros(7), "A step of zero became {found}.")
+    left = float(feet(answer).max())
     expect(
-        feet(answer).max() < 1e-3,
-        "With both hands out of reach the feet stay more than 1 mm from targets they can reach.",
+        left < 1e-3,
+        f"With both hands out of reach a foot stays {1000 * left:.2f} mm from a target that it can "
+        "reach; less than 1 mm is wanted.",
     )
 
 

@@ -1,10 +1,13 @@
 """Chapter 6. SDLS: the bound of each direction, and a clamp that keeps the way."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from ikteach.arrays import Array
 from ikteach.body import figures, forward, jacobian
 from ikteach.course.checking import Answer, exercise, expect
+from ikteach.course.forms import agree, numbers_apart
 from ikteach.solvers.response import directions
 
 
@@ -14,62 +17,102 @@ def jacobians() -> list[Array]:
     rng = np.random.default_rng(6)
     poses = tree.rest + rng.uniform(-0.4, 0.4, (3, len(tree)))
     human = jacobian(tree, forward(tree, poses), effectors)
-    return [*human, rng.normal(size=(6, 9)), rng.normal(size=(6, 4))]
+    sharp = np.diag(10.0 ** np.linspace(-2, 1, 6)) @ rng.normal(size=(6, 9))
+    return [
+        *human,
+        rng.normal(size=(6, 9)),
+        rng.normal(size=(6, 4)),
+        rng.normal(size=(3, 5)),
+        sharp,
+    ]
 
 
 @exercise(
     "06.gamma",
     returns=lambda J, max_angle: (min(J.shape),),
     hints=[
-        "N = lengths(U).sum(axis=0), ρ = lengths(J).sum(axis=0): one length an effector, summed.",
-        "M_i = Σ_j |v_ji| ρ_j / σ_i. In arrays: `abs(Vt) @ rho / sigma`. γ = min(1, N/M) γ_max.",
+        "How far are the effectors to go along uᵢ, and how far would the joints throw them for it?",
+        "N = lengths(U).sum(axis=0), ρ = lengths(J).sum(axis=0), Mᵢ = Σⱼ |vⱼᵢ| ρⱼ / σᵢ, and "
+        "γ = min(1, N/M) γ_max.",
+        "`M = abs(Vt) @ lengths(J).sum(axis=0) / sigma`; `return np.minimum(1, N / M) * max_angle`",
     ],
 )
 def gamma(answer: Answer) -> None:
     for J in jacobians():
         for max_angle in (np.pi / 4, 0.1):
             found = answer(J, max_angle)
-            expect(found >= 0, "A bound is below 0: what has a sign that should have none?")
-            expect(found <= max_angle * (1 + 1e-12), "A bound is above γ_max: where is the min?")
+            about = f"For a J of {J.shape[0]} × {J.shape[1]} and γ_max = {max_angle:.3g}"
             expect(
-                np.allclose(answer(100 * J, max_angle), found, rtol=1e-7, atol=1e-12),
-                "In centimetres the bounds change, but they are angles: divide M by σ.",
+                found >= 0,
+                f"{about} a bound is {found.min():.3g}, below 0: what has a sign that should not?",
             )
             expect(
-                np.allclose(answer(J[:, ::-1], max_angle), found, rtol=1e-7, atol=1e-12),
-                "With the joints in another order the bounds are others.",
+                found <= max_angle * (1 + 1e-4),
+                f"{about} a bound is {found.max():.4g}, above γ_max: where is the min?",
             )
-            wanted = directions(J, np.zeros(len(J)), max_angle=max_angle).gamma
-            i = int(abs(found - wanted).argmax())
-            expect(
-                np.allclose(found, wanted, rtol=1e-7, atol=1e-12),
-                f"γ of direction {i + 1} is {found[i]:.4g} where {wanted[i]:.4g} is wanted.",
+            agree(
+                answer(100 * J, max_angle),
+                found,
+                f"{about} a bound is {{wanted}} in metres and {{found}} in centimetres, but it is "
+                "an angle: divide M by σ.",
+                size=max_angle,
             )
+            agree(
+                answer(J[:, ::-1], max_angle),
+                found,
+                f"{about} a bound is {{wanted}}, and {{found}} with the joints in another order.",
+                size=max_angle,
+            )
+            agree(
+                found,
+                directions(J, np.zeros(len(J)), max_angle=max_angle).gamma,
+                f"{about} γ is {{found}}, where {{wanted}} is wanted.",
+                size=0.01 * max_angle,
+            )
+
+
+def unclamped() -> Iterator[tuple[Array, float]]:
+    """φ and a bound: the largest entry anywhere and of either sign; within, beyond and just on."""
+    rng = np.random.default_rng(7)
+    for n in (1, 2, 4, 20, 5, 3, 7):
+        for _ in range(4):
+            phi = rng.uniform(-1, 1, n) * 10.0 ** rng.uniform(-2, 1)
+            peak = float(abs(phi).max())
+            for share in (0.1, 0.9, 1.0, 1.1, 20.0):
+                yield phi, peak * share
+    yield np.zeros(3), 0.1
+    yield np.ones(3), 0.0
 
 
 @exercise(
     "06.clamp",
     returns=lambda phi, bound: phi.shape,
     hints=[
-        "Only one number is to be found: by what share the whole of φ shrinks.",
-        "`phi * min(1, bound / abs(phi).max())`, with a thought for φ = 0.",
+        "Only one number is to be found: which, and from which entry of φ?",
+        "The whole of φ shrinks by the share min(1, bound / max |φⱼ|), with a thought for φ = 0.",
+        "`peak = abs(phi).max()` and `return phi * min(1, bound / peak) if peak else phi`",
     ],
 )
 def clamp(answer: Answer) -> None:
-    rng = np.random.default_rng(7)
-    for n, size, bound in ((4, 1.0, 0.2), (20, 5.0, 0.7), (6, 0.01, 0.5), (5, 1.0, 10.0)):
-        phi = size * rng.uniform(0.3, 1, n) * rng.choice([-1, 1], n)
-        phi[-1] = -1.5 * size  # the largest is a negative one
-        done = answer(phi, bound)
-        peak = abs(phi).max()
-        expect(abs(done).max() <= bound * (1 + 1e-12), "An entry of φ exceeds the bound.")
+    for phi, bound in unclamped():
+        done, peak = answer(phi, bound), float(abs(phi).max())
+        wanted = phi * (bound / peak if peak > bound else 1)
+        i = int(abs(done - wanted).argmax())
+        was, now, right = numbers_apart(phi[i], done[i], wanted[i])
+        about = (
+            f"With bound {bound:.4g} entry {i + 1} of φ, {was} of at most {peak:.4g}, became {now}"
+        )
+        near = max(1e-4 * min(peak, bound), 1e-9 * peak)
         expect(
-            np.allclose(done * peak, phi * abs(done).max(), atol=1e-12),
-            "The direction of φ has changed: all entries must shrink by the same share.",
+            abs(done).max() <= bound + near,
+            f"{about}, and {right} is right: an entry of φ exceeds the bound.",
         )
         expect(
-            abs(abs(done).max() - min(peak, bound)) < 1e-9,
-            "φ within the bound must stay as it is, and beyond it just meet it.",
+            abs(done * peak - phi * abs(done).max()).max() <= near * peak,
+            f"{about}, and {right} is right: all entries must shrink by the same share.",
         )
-    expect(not answer(np.zeros(3), 0.1).any(), "φ = 0 must stay 0.")
-    expect(not answer(np.ones(3), 0.0).any(), "With a bound of 0 nothing may move.")
+        expect(
+            abs(done - wanted).max() <= near,
+            f"{about}, and {right} is right: φ within the bound must stay as it is, and beyond it "
+            "just meet it.",
+        )

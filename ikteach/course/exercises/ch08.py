@@ -1,106 +1,164 @@
-"""Chapter 8. A verdict that follows from the log, and a log that can carry one."""
+"""Chapter 8. A verdict that follows from the log, and an experiment that can carry one."""
+
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from ikteach import study
+from ikteach.body import figures
 from ikteach.course.checking import Answer, exercise, expect
+from ikteach.course.forms import NAME, NAMES, WrongError, of_form, parts
 from ikteach.motion import gait
 from ikteach.solvers import SOLVERS
 
-COLUMNS = ["frame", "time", "method", "effector", "error", "jitter", "capped", "held"]
+RATE = 30  # frames per second
+LONGEST = 1000  # frames
+LARGEST_CAP = np.pi  # [rad]
 
 
 def made_up(seed: int) -> pd.DataFrame:
     """A small log with numbers at random, in which the methods' order depends on the seed."""
     rng = np.random.default_rng(seed)
     rows = [
-        {"frame": t, "method": m, "effector": e, "error": rng.exponential(), "jitter": rng.random()}
+        {"frame": t, "method": m, "effector": e, "error": rng.exponential() ** 2, "jitter": shake}
         for m in SOLVERS
-        for t in range(9)
+        for t, shake in enumerate(rng.exponential(rng.uniform(0.5, 2), 5))
         for e in ("hand", "foot")
     ]
     return pd.DataFrame(rows)
 
 
+def variants(seed: int) -> list[tuple[str, pd.DataFrame, dict[str, str]]]:
+    """The log as it is, with its rows in another order, and with the methods under other names."""
+    table, same = made_up(seed), {name: name for name in SOLVERS}
+    other = {name: f"method {i}" for i, name in enumerate(SOLVERS)}
+    return [
+        ("", table, same),
+        ("with the rows in another order ", table.sample(frac=1, random_state=seed), same),
+        (
+            "with the methods under other names ",
+            table.assign(method=table["method"].map(other)),
+            other,
+        ),
+        ("with `method` as a category ", table.astype({"method": "category"}), same),
+    ]
+
+
+def means(table: pd.DataFrame, measure: str) -> dict[str, float]:
+    """{method: mean}."""
+    return {
+        str(m): float(table[measure][table["method"] == m].mean())
+        for m in dict.fromkeys(table["method"])
+    }
+
+
 @exercise(
     "08.order",
-    returns=list,
+    returns=NAMES,
     hints=[
-        '`table.groupby("method", observed=True)` puts the rows of a method together.',
-        "Take the mean of `error` of each group, `sort_values()`, and give its index as a list.",
+        "Which rows belong to one method, and which two numbers of them decide?",
+        'The mean of `error` and of `jitter` of each: `table.groupby("method", observed=True)`.',
+        '`mean = table.groupby("method", observed=True)[["error", "jitter"]].mean()`, then '
+        '`mean[mean["jitter"] <= most].sort_values("error").index`',
     ],
 )
 def order(answer: Answer) -> None:
-    for seed in range(4):
-        table = made_up(seed)
-        mean = {m: float(table["error"][table["method"] == m].mean()) for m in SOLVERS}
-        wanted = sorted(mean, key=lambda m: mean[m])
-        found = [str(name) for name in answer(table)]
-        expect(
-            sorted(found) == sorted(SOLVERS),
-            f"The order must name each of {', '.join(SOLVERS)} once; yours is {found}.",
-        )
-        expect(
-            found != wanted[::-1],
-            "Your order is upside down: the nearest, with the least mean, first.",
-        )
-        expect(
-            found == wanted,
-            f"{found[0]} comes first in your order with a mean of {mean[found[0]]:.3f}, but "
-            f"{wanted[0]} has {mean[wanted[0]]:.3f}: the order must follow from the mean of "
-            "`error`."
-            if found[0] != wanted[0]
-            else "The first is right, but the others are not in the order of their mean `error`.",
-        )
-        shuffled = table.sample(frac=1, random_state=seed)
-        expect(
-            [str(name) for name in answer(shuffled)] == wanted,
-            "With the rows in another order your verdict is another.",
-        )
-        names = {name: f"method {i}" for i, name in enumerate(SOLVERS)}
-        renamed = table.assign(method=table["method"].map(names))
-        expect(
-            [str(name) for name in answer(renamed)] == [names[name] for name in wanted],
-            "With the methods under other names your verdict is another: it must not know them.",
-        )
+    """order(table, most): names, the nearest first, of the methods that shake no more than most."""
+    for seed in range(6):
+        for how, table, names in variants(seed):
+            error, jitter = means(table, "error"), means(table, "jitter")
+            shakes = sorted(jitter.values())
+            for calm in (4, 3, 2, 1):
+                most = shakes[calm - 1] + 0.3 * (shakes[min(calm, 3)] - shakes[calm - 1])
+                most = most if calm < 4 else 2 * shakes[-1]
+                wanted = sorted((m for m in error if jitter[m] <= most), key=error.__getitem__)
+                found = answer(table, float(most))
+                told = (
+                    f"{how}your order is {', '.join(found) or 'empty'}, with jitter up to "
+                    f"{most:.3f}. In the log "
+                    + ", ".join(f"{m} has {error[m]:.3f} and {jitter[m]:.3f}" for m in error)
+                    + " (mean error and jitter)"
+                )
+                unknown = [name for name in found if name not in names.values()]
+                expect(not unknown, f"{unknown[:1]} is no method of the log: {told}.")
+                expect(
+                    sorted(found) == sorted(wanted),
+                    f"The names must be those with no more jitter than that, {told}.",
+                )
+                expect(
+                    len(found) <= 2 or found != wanted[::-1],
+                    f"Your order is upside down, the nearest comes first: {told}.",
+                )
+                expect(found == wanted, f"The least mean of `error` comes first: {told}.")
 
 
 @exercise(
     "08.experiment",
-    returns=tuple,
+    returns=parts("targets", "a cap", "a function that names the winner"),
     hints=[
-        "`study.compare(*human, targets, max_step=...)` gives a log of all four methods.",
-        "Do not write the winner down: `order(log)[0]` follows from the log, whatever is in it.",
+        "What must be the same for all four methods, so that nothing but the method differs?",
+        "The targets (a motion at the times of a clock), and one cap. The winner follows from the "
+        "log: the method whose mean `error` is least, whatever is in it.",
+        "`gait.running(gait.running.clock(60))`, `np.radians(10)` and "
+        '`lambda log: log.groupby("method", observed=True)["error"].mean().idxmin()`',
     ],
     seconds=60,
 )
 def experiment(answer: Answer) -> None:
-    made = answer()
-    expect(len(made) == 2, f"Return two things, the log and the winner, not {len(made)}.")
-    log, winner = made
-    expect(isinstance(log, pd.DataFrame), "The first thing must be a log, a pandas DataFrame.")
-    missing = [name for name in COLUMNS if name not in log]
-    expect(not missing, f"The log has no column {missing[:1]}; `study.compare` makes them all.")
-    methods = sorted(map(str, log["method"].unique()))
+    """experiment() -> targets (T, 4, 3) [m], a cap [rad], and a function of a log."""
+    given, cap, winner = answer()
+    targets, max_step = designed(given, cap)
+    if not callable(winner):
+        raise WrongError(
+            f"The third must be a function that names the winner of any log, not {winner!r}."
+        )
+    judge = Answer(winner, "winner", NAME)
+    for seed in range(20):
+        for how, table, names in variants(seed):
+            follows(judge, table, f"a made-up log {how}", names.values())
+    log = study.compare(*figures.human(), targets, max_step=max_step)
+    follows(judge, log, "the log of your own experiment", SOLVERS)
+
+
+def designed(given: Any, cap: Any) -> tuple[Any, float]:
+    """The targets and the cap, or WrongError with what is not fair or too short about them."""
+    shape = np.shape(given)
+    if len(shape) != 3:
+        raise WrongError(f"The targets must be (frames, 4, 3) [m], and yours have shape {shape}.")
+    targets = of_form(given, (shape[0], 4, 3), "Your targets are")
+    if isinstance(cap, dict):
+        raise WrongError("One cap for all: with a cap of each author's own it is no fair race.")
+    max_step = float(of_form(cap, (), "Your cap is"))
     expect(
-        methods == sorted(SOLVERS), f"The log must hold {', '.join(SOLVERS)}; it holds {methods}."
+        0 < max_step <= LARGEST_CAP,
+        f"The cap is {max_step:.4g} rad; it must be above 0 and not above π. Is it in degrees?",
     )
-    expect(np.isfinite(log["error"]).all(), "The log has distances that are not numbers.")
-    parts = log.groupby("method", observed=True)
-    frames = {str(m): (len(part), part["time"].max()) for m, part in parts}
-    expect(
-        len(set(frames.values())) == 1,
-        "The methods did not run for the same time on the same frames: that is no fair race.",
-    )
-    seconds = float(log["time"].max())
+    seconds = len(targets) / RATE
     expect(
         seconds >= gait.running.period,
-        f"The race is over after {seconds:.2f} s, before one cycle of running is: make it longer.",
+        f"The race is over after {seconds:.2f} s, before one cycle of running, "
+        f"{gait.running.period:.2f} s, is: make it longer.",
     )
-    mean = log.groupby("method", observed=True)["error"].mean()
-    expect(str(winner) in methods, f"The winner must be one of the methods, not {winner!r}.")
     expect(
-        mean[winner] == mean.min(),
-        f"Your winner is {winner} with a mean of {mean[winner]:.4f} m, but your own log says "
-        f"{mean.idxmin()} with {mean.min():.4f} m.",
+        len(targets) <= LONGEST,
+        f"The race takes {len(targets)} frames; {LONGEST} are the most that this check runs.",
+    )
+    moved = float(np.ptp(targets, axis=0).max())
+    expect(
+        0.05 <= moved <= 5,
+        f"The targets move by {moved:.3g} m in all; a motion of 0.05 to 5 m is wanted.",
+    )
+    return targets, max_step
+
+
+def follows(judge: Answer, table: pd.DataFrame, what: str, names: Any) -> None:
+    """The winner is that with the least mean distance."""
+    mean = means(table, "error")
+    best, found = min(mean, key=mean.__getitem__), judge(table)
+    expect(found in mean, f"In {what} the winner is one of {', '.join(names)}, not {found!r}.")
+    expect(
+        found == best,
+        f"In {what} you name {found} with a mean of {mean[found]:.4g} m, but {best} has "
+        f"{mean[best]:.4g} m.",
     )

@@ -11,9 +11,9 @@ def column(v, p, s):
 
 # %% 01.cramer
 def cramer3(J, r):
-    """The x with J x = r, by Cramer's rule."""
+    """The x with J x = r, by Cramer's rule; ValueError where the columns lie in a plane."""
     det = np.linalg.det(J)
-    if abs(det) < 1e-12:
-        raise ValueError("det J = 0: no inverse")
+    if abs(det) <= 1e-12 * np.prod(np.linalg.norm(J, axis=0)):
+        raise ValueError("the columns lie in a plane: no inverse")
     swapped = [np.where(np.arange(3) == i, r[:, None], J) for i in range(3)]
     return np.array([np.linalg.det(A) for A in swapped]) / det

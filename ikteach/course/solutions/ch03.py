@@ -10,7 +10,8 @@ def alpha(J, e):
 
 
 # %% 03.gain
-largest_gain = 2
+def left(gain, best):
+    return 1 - (1 - best) * gain * (2 - gain)  # 1 again at gain 2, whatever `best` is
 
 
 # %% 03.safe

@@ -15,5 +15,5 @@ def safe_damping(e, longest):
 
 
 # %% 05.unit
-def damping_in(damping, per_metre):
-    return damping * per_metre
+def damping_in(damping, per_metre, per_radian):
+    return damping * per_metre / per_radian  # λ has the unit of σ

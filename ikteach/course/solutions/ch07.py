@@ -4,9 +4,9 @@ import numpy as np
 
 
 # %% 07.pace
-def pace(A, omega):
-    """The speed of the body at which the foot under it stands still, in m/s."""
-    return abs(A * omega)
+def pace(A, omega, z):
+    """The speed of the body at which a foot at z stands still, in m/s."""
+    return abs(omega) * np.sqrt(A**2 - z**2)
 
 
 # %% 07.path

@@ -26,11 +26,11 @@ WRONG = {
         (lambda x, y, a, b: bool(np.hypot(x, y) <= a + b), "in the hole"),
         (
             lambda x, y, a, b: bool(a - b <= np.hypot(x, y) <= a + b),
-            "the second link is the longer",
+            "in the hole",
         ),
-        (lambda x, y, a, b: bool(abs(a - b) < np.hypot(x, y) < a + b), "stretched arm, just so"),
-        (lambda x, y, a, b: bool(abs(a - b) <= x + y <= a + b), "reach that"),
-        (lambda x, y, a, b: bool(abs(a - b) <= x * x + y * y <= a + b), "reach that"),
-        (lambda x, y, a, b: True, "further than both links"),
+        (lambda x, y, a, b: bool(abs(a - b) < np.hypot(x, y) < a + b), "reached just so"),
+        (lambda x, y, a, b: bool(abs(a - b) <= x + y <= a + b), "can reach"),
+        (lambda x, y, a, b: bool(abs(a - b) <= x * x + y * y <= a + b), "can reach"),
+        (lambda x, y, a, b: True, "cannot reach"),
     ],
 }

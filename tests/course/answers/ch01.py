@@ -32,12 +32,12 @@ WRONG = {
     ],
     "01.cramer": [
         (lambda J, r: J @ r, "That is J r"),
-        (lambda J, r: adjugate(J) @ r, "J times your step"),
-        (lambda J, r: np.linalg.inv(J).T @ r, "J times your step"),
+        (lambda J, r: adjugate(J) @ r, "J times your x"),
+        (lambda J, r: np.linalg.inv(J).T @ r, "J times your x"),
         (unguarded, "yours returns something"),
-        (zero_if_singular, "yours returns something"),
+        (zero_if_singular, "J times your x"),  # it refuses what is only small,
         (lambda J, r: np.linalg.solve(J, r)[:2], "array of shape (2,)"),
-        (refuses_all, "raised ValueError: no inverse"),
-        (lambda J, r: J.T @ r, "J times your step"),
+        (refuses_all, "but it has an inverse"),
+        (lambda J, r: J.T @ r, "J times your x"),
     ],
 }

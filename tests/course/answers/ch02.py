@@ -10,6 +10,7 @@ def by_pose(J, e):
 
 
 def never_lost(J, e):
+    """Of `pinv` alone."""
     return "near" if np.linalg.norm(np.linalg.pinv(J) @ e) > 10 * np.linalg.norm(e) else "free"
 
 
@@ -33,19 +34,20 @@ def by_first(J, e):
 
 WRONG = {
     "02.classify": [
-        (by_pose, "across the arm"),
+        (by_pose, "'free' and not 'lost' with the arm straight, the error across it"),
         (never_lost, "'lost' and not 'free'"),
-        (by_size, "The class is of the direction of e"),
-        (never_near, "'near' and not 'free'"),
-        (by_first, "seen from other axes"),
-        (lambda J, e: "singular", "must say 'free', 'near' or 'lost'"),
-        (lambda J, e: np.linalg.det(J), "where a str is wanted"),
+        (by_size, ", 10 times: "),
+        (never_near, "and not 'free'"),
+        (by_first, "and not"),
+        (lambda J, e: "singular", "must say 'free', 'near', 'partly lost' or 'lost'"),
+        (lambda J, e: np.linalg.det(J), "where a name is wanted"),
     ],
     "02.bend": [
-        (0.0, "try more"),
-        (180, "try less"),
-        (45.0, "try more"),
-        (np.pi / 2, "try more"),  # in radians
-        (-90.0, "Between 0"),
+        (lambda a, b, bend: abs(np.sin(bend)), "√det(JJᵀ) is"),
+        (lambda a, b, bend: a * b * np.sin(bend), "not -"),
+        (lambda a, b, bend: a * b * abs(np.cos(bend)), "bent by 0°"),
+        (lambda a, b, bend: a * b * abs(np.sin(np.radians(bend))), "bent by 90°"),
+        (lambda a, b, bend: a * a * abs(np.sin(bend)), "√det(JJᵀ) is"),
+        (lambda a, b, bend: 90.0, "√det(JJᵀ) is"),
     ],
 }

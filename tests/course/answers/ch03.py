@@ -21,16 +21,19 @@ def only_without_error(J, e):
 
 WRONG = {
     "03.alpha": [
-        (lambda J, e: best(J, e) / 2, "2 times as much leaves less"),
-        (lambda J, e: 1 / best(J, e), "too large"),
+        (lambda J, e: best(J, e) / 2, "leaves less"),
+        (lambda J, e: 1 / best(J, e), "leaves"),
         (lambda J, e: (e @ e) / (J.T @ e @ J.T @ e), "leaves less"),
-        (lambda J, e: -best(J, e), "above 0"),
+        (lambda J, e: -best(J, e), "goes downhill"),
         (lambda J, e: 0.1, "leaves less"),
     ],
     "03.gain": [
-        (1, "A little above your gain the error still falls"),
-        (4, "A little below your gain the error grows already"),
-        (-2, "above 0"),
+        (lambda gain, best: 1 - (1 - best) * gain, "leaves"),
+        (lambda gain, best: best + (1 - gain) ** 2, "leaves"),
+        (lambda gain, best: (1 - gain) ** 2, "leaves"),
+        (lambda gain, best: 2, "leaves"),
+        (lambda gain, best: 1 - (1 - best) * gain * (2 - gain) / 2, "leaves"),
+        (lambda gain, best: np.sqrt(1 - (1 - best) * gain * (2 - gain)), "leaves"),
     ],
     "03.safe": [
         (slow, "NaN"),

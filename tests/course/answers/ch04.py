@@ -24,7 +24,7 @@ WRONG = {
     "04.projector": [
         (lambda J: np.eye(J.shape[1]) - J.T @ J, "JP is not zero"),
         (lambda J: np.linalg.pinv(J) @ J, "JP is not zero"),
-        (lambda J: np.zeros((J.shape[1],) * 2), "The trace of P"),
+        (lambda J: np.zeros((J.shape[1],) * 2), "the trace of P"),
         (
             lambda J: np.eye(J.shape[1]) - J.T @ np.linalg.inv(J @ J.T + 1e-3 * np.eye(len(J))) @ J,
             "JP is not zero",

@@ -14,7 +14,7 @@ def by(factor):
 WRONG = {
     "05.svd": [
         (by(lambda s, d: 1 / s), "longer than"),
-        (by(lambda s, d: s / (s**2 + d)), "longer than"),
+        (by(lambda s, d: s / (s**2 + d)), "not the least"),
         (by(lambda s, d: 1 / (s + d)), "longer than"),
         (by(lambda s, d: s / (s**2 + 4 * d**2)), "not the least"),
         (lambda J, e, damping: dls(J, e, damping=0.5), "longer than"),
@@ -26,8 +26,10 @@ WRONG = {
         (lambda e, longest: 0.1, "times the longest"),
     ],
     "05.unit": [
-        (lambda damping, per_metre: damping, "another Δθ"),
-        (lambda damping, per_metre: damping / per_metre, "another Δθ"),
-        (lambda damping, per_metre: damping * per_metre**2, "another Δθ"),
+        (lambda damping, per_metre, per_radian: damping, "another Δθ"),
+        (lambda damping, per_metre, per_radian: damping * per_metre, "another Δθ"),
+        (lambda damping, per_metre, per_radian: damping * per_metre * per_radian, "another Δθ"),
+        (lambda damping, per_metre, per_radian: damping / per_metre / per_radian, "another Δθ"),
+        (lambda damping, per_metre, per_radian: damping * per_metre**2 / per_radian, "another Δθ"),
     ],
 }

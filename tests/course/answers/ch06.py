@@ -39,7 +39,7 @@ WRONG = {
     "06.gamma": [
         (unbounded, "above γ_max"),
         (signed, "below 0"),
-        (without_sigma, "In centimetres"),
+        (without_sigma, "in centimetres"),
         (without_n, "is wanted"),
         (upside_down, "is wanted"),
         (lambda J, max_angle: np.full(min(J.shape), max_angle), "is wanted"),

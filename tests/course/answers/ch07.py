@@ -44,10 +44,13 @@ def wandering(phase):
 
 WRONG = {
     "07.pace": [
-        (lambda A, omega: A * omega, "a speed is not negative"),
-        (lambda A, omega: abs(A), "the foot goes back at"),
-        (lambda A, omega: 2 * abs(A * omega) / np.pi, "the foot goes back at"),  # the mean
-        (lambda A, omega: np.array([A, omega]), "shape"),
+        (lambda A, omega, z: A * omega, "a speed is not negative"),
+        (lambda A, omega, z: abs(A * omega), "the foot goes back at"),
+        (lambda A, omega, z: abs(A) * omega * np.sqrt(1 - (z / A) ** 2), "is not negative"),
+        (lambda A, omega, z: abs(omega * z), "the foot goes back at"),
+        (lambda A, omega, z: 2 * abs(A * omega) / np.pi, "the foot goes back at"),  # the mean
+        (lambda A, omega, z: abs(omega) * np.sqrt(A**2 + z**2), "the foot goes back at"),
+        (lambda A, omega, z: np.array([A, omega]), "shape"),
     ],
     "07.path": [
         (sine, "lifts by"),

@@ -15,6 +15,7 @@ WRONG = {
         (everywhere("dls") | {"foot.l": "newton"}, "is none of"),
         ({"foot.l": "sdls"}, "has no method"),
         (everywhere("sdls") | {"head": "dls"}, "no effector"),
+        (everywhere(["sdls"]), "a list, where a name is wanted"),
         ("sdls", "a dictionary"),
         (everywhere("pseudoinverse") | {"hand.l": "sdls"}, "shakes by"),  # it may freeze
     ],

@@ -18,9 +18,9 @@ WRONG = {
     "10.null": [
         (lambda J, wish: wish, "the whole wish"),
         (lambda J, wish: 0 * wish, "nothing moves at all"),
-        (lambda J, wish: np.linalg.pinv(J) @ J @ wish, "The hand notices"),
-        (lambda J, wish: wish - J.T @ (J @ wish), "The hand notices"),
-        (lambda J, wish: wish + np.linalg.pinv(J) @ J @ wish, "The hand notices"),
+        (lambda J, wish: np.linalg.pinv(J) @ J @ wish, "the hand notices"),
+        (lambda J, wish: wish - J.T @ (J @ wish), "the hand notices"),
+        (lambda J, wish: wish + np.linalg.pinv(J) @ J @ wish, "the hand notices"),
         (too_little, "more of the wish"),
         (lambda J, wish: np.where(J.any(axis=0), 0, wish), "more of the wish"),
         (lambda J, wish: J @ wish, "shape"),
