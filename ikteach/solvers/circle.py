@@ -41,6 +41,6 @@ def image(J: ArrayLike, points: int = 73) -> Image:
     return Image(circle, circle @ J.T, Vt * sign[:, None], sigma, U.T * sign[:, None])
 
 
-def parts(image: Image, dtheta: ArrayLike) -> Array:
-    """Split Δθ (2,) along the v_i: (2,) [rad]; JΔθ is Σ parts_i σ_i u_i."""
+def along(image: Image, dtheta: ArrayLike) -> Array:
+    """Split Δθ (2,) along the v_i: (2,) [rad]; JΔθ is Σ a_i σ_i u_i."""
     return np.matvec(image.V, numbers("dtheta", dtheta))

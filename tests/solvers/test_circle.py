@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ikteach.solvers.circle import image, parts
+from ikteach.solvers.circle import along, image
 
 BY_HAND = np.array([[-1.0, 0.0], [1.0, 1.0]])  # chapter 2 works it out on paper
 
@@ -24,7 +24,7 @@ def test_ellipse_and_parts(seed):
     np.testing.assert_allclose(seen.ellipse, seen.circle @ J.T)
     lengths = np.linalg.norm(seen.ellipse, axis=1)
     assert seen.sigma[1] - 1e-12 <= lengths.min() <= lengths.max() <= seen.sigma[0] + 1e-12
-    share = parts(seen, dtheta)
+    share = along(seen, dtheta)
     np.testing.assert_allclose(share @ seen.V, dtheta)
     np.testing.assert_allclose((share * seen.sigma) @ seen.U, J @ dtheta)
 

@@ -11,7 +11,7 @@ from ikteach.body import forward, jacobian, locate
 from ikteach.body.figures import planar_arm
 from ikteach.motion.methods import Methods, methods_of
 from ikteach.solvers import ask
-from ikteach.solvers.circle import Image, image, parts
+from ikteach.solvers.circle import Image, along, image
 from ikteach.view.charts import outline
 from ikteach.view.live.bench import Bench, Shown
 from ikteach.view.live.panel import slider
@@ -105,7 +105,7 @@ class SvdBench(Bench):
 
 def _told(J: Array, seen: Image, bones: Array, dtheta: Array) -> Any:
     """Draw Δθ and its parts along v_i, and where J takes them; the same in words."""
-    a, b = parts(seen, dtheta)
+    a, b = along(seen, dtheta)
     first, moved = a * seen.V[0], a * seen.sigma[0] * seen.U[0]
     goes = J[:2] @ dtheta
     left = [*_circle(seen), _path(first, dtheta), _arrow(dtheta, RED, "Δθ", width=4)]
