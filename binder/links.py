@@ -6,6 +6,7 @@ prints them as Markdown; with --write it puts them into README.md, between its t
 """
 
 import argparse
+import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -19,11 +20,14 @@ PROVIDERS = {"github.com": "gh", "gitlab.com": "gl"}  # Binder's short names
 
 
 def chapters(root: Path = ROOT) -> dict[str, str]:
-    """Chapter, such as "7 gait", -> what the server is asked for: its notebook in JupyterLab."""
-    names = [path.name for path in sorted((root / "notebooks").glob("[0-9][0-9]_*.ipynb"))]
+    """Chapter, such as "7 gait", -> what the server is asked for: its notebook in JupyterLab.
+
+    What is no chapter, such as "prerequisites", comes before them.
+    """
+    names = [path.stem for path in (root / "notebooks").glob("*.ipynb")]
     return {
-        f"{int(name[:2])} {name[3:].removesuffix('.ipynb')}": f"lab/tree/notebooks/{name}"
-        for name in names
+        re.sub(r"^0?(\d+)_", r"\1 ", name): f"lab/tree/notebooks/{name}.ipynb"
+        for name in sorted(names, key=lambda name: (name[0].isdigit(), name))
     }
 
 
@@ -80,7 +84,7 @@ def repository(address: str) -> tuple[str, str]:
 def markdown(link: Callable[[str], str], start: str, root: Path = ROOT) -> str:
     """List the links to start, chapters and lecture, in three paragraphs."""
     pages = chapters(root)
-    first = next(iter(pages.values()))
+    first = next(page for name, page in pages.items() if name[0].isdigit())
     rows = {"Chapters": pages, "For a lecture": lecture(root)}
     lines = [f"[{start}]({link(first)})"] + [
         f"{title}: " + " · ".join(f"[{name}]({link(page)})" for name, page in row.items())

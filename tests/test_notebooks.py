@@ -137,4 +137,4 @@ def test_every_prediction_is_revealed(path: Path) -> None:
     )
     assert set(asked) == set(shown)
     assert len(asked) == len(set(asked))
-    assert all(key.startswith(path.name[:2] + ".") for key in asked)
+    assert all(key.startswith(path.stem.partition("_")[0] + ".") for key in asked)

@@ -36,7 +36,7 @@ def forward(tree: Tree, theta: ArrayLike) -> Frames:
     Each step of the climb joins all joints of one depth to their parents by one stacked product,
     a batch of poses with them (`body.plan`).
     ValueError if θ has another shape, or a number that is not finite.
-    Source: thesis section 3.1; MATHS "Tree, forward kinematics, Jacobian".
+    Source: thesis section 3.1.
     """
     theta, plan = pose(tree, theta), tree.plan
     T = plan.local(theta)  # [R(v, θ) offset v; 0 1 0], each in its parent's frame

@@ -88,7 +88,7 @@ def step(
     4. the joints turn as the solver asks.
 
     ValueError if a shape is wrong or a number not finite; LookupError for an unknown method;
-    FloatingPointError if the solver's answer is not finite. Order of one tick: see MATHS; Buss.
+    FloatingPointError if the solver's answer is not finite. Order of one tick: Buss.
     """
     theta = numbers("theta", theta)
     frames = frames_of(tree, theta, frames)

@@ -18,6 +18,7 @@ from typing import Any
 from ikteach.publish.delivery import chapters, course_files, deliver, find_course, report
 from ikteach.publish.parser import Parser, RefusedError
 
+ANSWER = re.compile(r"^## (\S+) (\S+)\n", re.MULTILINE)  # chapter, id of the cell that asks
 MARK = re.compile(r"^# %% (\S+)\n", re.MULTILINE)
 
 Notebook = Any  # of nbformat, which is typed as Any
@@ -52,7 +53,7 @@ def main(argv: list[str]) -> int:
 
 def student(notebooks: Path, folder: Path) -> None:
     """Copy the notebooks without outputs, and their files."""
-    _make(notebooks, folder, lambda notebook: notebook)
+    _make(notebooks, folder, _as_it_is)
 
 
 def instructor(notebooks: Path, folder: Path) -> None:
@@ -65,7 +66,7 @@ def pages(notebooks: Path, folder: Path) -> None:
     from ikteach.publish import pages
 
     titles = chapters(notebooks)
-    _make(notebooks, folder, lambda notebook: notebook)
+    _make(notebooks, folder, _as_it_is)
     for name in titles:
         place = folder / name
         place.with_suffix(".html").write_text(pages.page(place, titles), encoding="utf-8")
@@ -77,7 +78,11 @@ def pages(notebooks: Path, folder: Path) -> None:
 BUILDS = {"student": student, "instructor": instructor, "html": pages}
 
 
-def _make(notebooks: Path, folder: Path, change: Callable[[Notebook], Notebook]) -> None:
+def _as_it_is(notebook: Notebook, chapter: str) -> Notebook:
+    return notebook
+
+
+def _make(notebooks: Path, folder: Path, change: Callable[[Notebook, str], Notebook]) -> None:
     import nbformat
 
     for name in course_files(notebooks):
@@ -86,7 +91,8 @@ def _make(notebooks: Path, folder: Path, change: Callable[[Notebook], Notebook])
         if place.suffix != ".ipynb":
             shutil.copyfile(notebooks / name, place)
             continue
-        notebook = change(clean(nbformat.read(notebooks / name, as_version=4)))
+        chapter = place.stem.partition("_")[0]
+        notebook = change(clean(nbformat.read(notebooks / name, as_version=4)), chapter)
         nbformat.write(notebook, place)
 
 
@@ -100,15 +106,24 @@ def clean(notebook: Notebook) -> Notebook:
     return notebook
 
 
-def with_solutions(notebook: Notebook) -> Notebook:
-    """Copy a notebook with solutions folded after exercises."""
+def with_solutions(notebook: Notebook, chapter: str = "") -> Notebook:
+    """Copy a notebook with solutions and answers after the questions.
+
+    Solutions are folded. Both have the tag `solution`.
+    """
     import nbformat
 
     notebook = copy.deepcopy(notebook)
     folded = {"tags": ["solution", "hide-input"], "jupyter": {"source_hidden": True}}
-    cells = []
+    cells, answered = [], open_answers(chapter)
     for cell in notebook.cells:
         cells.append(cell)
+        if cell.id in answered:
+            text = f"**Answers.** {answered[cell.id]}"
+            tags = {"tags": ["solution"]}
+            cells.append(
+                nbformat.v4.new_markdown_cell(text, id=f"answers-{cell.id}", metadata=tags)
+            )
         for key, name in checks(cell) if cell.cell_type == "code" else []:
             source = f'{solution(key)}\n\n\ncheck("{key}", {name})'
             name = re.sub(r"\W", "-", f"solution-{key}")
@@ -139,6 +154,19 @@ def solution(key: str) -> str:
     if key not in found:
         raise LookupError(f"{chapter.name} has no solution for {key!r}.")
     return found[key]
+
+
+def open_answers(chapter: str) -> dict[str, str]:
+    """Return a chapter's answers, {id of the cell that asks: text}.
+
+    None where they are not, as in the installed package.
+    """
+    path = Path(__file__).parents[1] / "course" / "solutions" / "answers.md"
+    if not path.exists():
+        return {}
+    _, *found = ANSWER.split(path.read_text(encoding="utf-8"))
+    rows = zip(found[::3], found[1::3], found[2::3], strict=True)
+    return {cell: text.strip() for number, cell, text in rows if number == chapter}
 
 
 def solutions(text: str) -> dict[str, str]:

@@ -53,8 +53,12 @@ def course_files(notebooks: Path) -> list[str]:
 
 
 def chapters(notebooks: Path) -> dict[str, str]:
-    """List the chapters in order: file name -> title."""
+    """List the chapters in order: file name -> title.
+
+    What has no number, such as the prerequisites, comes before them.
+    """
     names = [name for name in course_files(notebooks) if PurePosixPath(name).match("*.ipynb")]
+    names.sort(key=lambda name: name[0].isdigit())
     return {name: title(notebooks / name) for name in names if "/" not in name}
 
 

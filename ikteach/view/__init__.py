@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from ikteach.view.chapters.jacobian import ColumnPoser
     from ikteach.view.chapters.reach import Simulator
     from ikteach.view.chapters.singularity import BendBench
+    from ikteach.view.chapters.svd import SvdBench
     from ikteach.view.chapters.workbench import Workbench
     from ikteach.view.raster.still import StillScene
     from ikteach.view.webgl.scene import Scene
@@ -21,6 +22,7 @@ _HOMES = {
     "Scene": "webgl.scene",
     "Simulator": "chapters.reach",
     "StillScene": "raster.still",
+    "SvdBench": "chapters.svd",
     "Workbench": "chapters.workbench",
 }
 
@@ -32,6 +34,7 @@ __all__ = [
     "Scene",
     "Simulator",
     "StillScene",
+    "SvdBench",
     "Workbench",
 ]
 

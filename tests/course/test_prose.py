@@ -9,7 +9,7 @@ import pytest
 from ikteach import dls, figures, forward, gait, jacobian, pseudoinverse, track, transpose
 from ikteach.motion import BUSS_CAPS, clip, hold, per_chain, whole
 from ikteach.solvers import SOLVERS
-from ikteach.study.experiment import arrivals, nearby
+from ikteach.study.experiment import arrivals, nearby, starts
 
 ARM, HUMAN = figures.planar_arm(3), figures.human()
 CYCLE = gait.walking.at(np.linspace(0, 2 * np.pi, 34, endpoint=False))
@@ -78,6 +78,41 @@ def test_05_no_damping_moves_a_straight_arm_inward():
     J = jacobian(tree, forward(tree, tree.rest), hand)
     for damping in (0.001, 0.1, 10.0):
         assert not dls(J, np.array([-1.0, 0, 0]), damping=damping).any()
+
+
+def smallest(theta):
+    """σ₁₂ of the human at poses (..., 20)."""
+    tree, effectors = HUMAN
+    return np.linalg.svdvals(jacobian(tree, forward(tree, theta), effectors))[..., -1]
+
+
+def test_06_the_spine_moves_a_straight_arm_too():
+    tree = HUMAN.tree
+    theta = starts(tree, 1000, spread=0.4)[1:]
+    theta[:, [tree.index("elbow.l"), tree.index("elbow.r")]] = 0
+    assert smallest(theta).min() > 1e-6
+    assert np.median(smallest(theta)) == pytest.approx(0.04, abs=0.01)
+    J = jacobian(tree, forward(tree, tree.rest), HUMAN.effectors)
+    assert (np.linalg.svdvals(J) < 1e-9).sum() == 2
+
+
+def test_06_a_cap_of_its_own_makes_the_pseudoinverse_as_calm_as_dls():
+    same = {"targets": WALK[:68, None], "theta": nearby(HUMAN.tree.rest, 20)}
+    jitter = [
+        np.median(track(*HUMAN, **same, solver=solver, max_step=radians(cap)).jitter.mean(axis=0))
+        for solver, cap in ((dls, 45), (pseudoinverse, 5), (pseudoinverse, 45))
+    ]
+    assert jitter[1] / jitter[0] == pytest.approx(1, abs=0.3)
+    assert jitter[2] / jitter[0] > 5
+
+
+def test_07_feet_of_the_pseudoinverse_are_nearer_than_those_of_dls():
+    walk = gait.walking(gait.walking.clock(300))
+    cap = {"max_step": radians(5), "cap": per_chain}
+    near = [
+        track(*HUMAN, walk, name, **cap).error[30:, :2].mean() for name in ("pseudoinverse", "dls")
+    ]
+    assert near[0] < 0.7 * near[1]
 
 
 def test_06_and_08_constants():

@@ -8,6 +8,7 @@ import { floats } from "../../ikteach/view/widgets/binary.js";
 import { nearest } from "../../ikteach/view/widgets/curve.js";
 import { projection, RADIUS } from "../../ikteach/view/widgets/globe.js";
 import { guarded } from "../../ikteach/view/widgets/guarded.js";
+import { onPlane, underPoint } from "../../ikteach/view/widgets/plane.js";
 import { Element, Model } from "./page.js";
 
 test("numbers are read from a view that begins anywhere", () => {
@@ -97,4 +98,21 @@ test("an error in a callback is shown, and stops no other", async () => {
   assert.equal(el.children.length, 1);
   assert.match(el.children[0].children[0], /no such joint/);
   mock.restoreAll();
+});
+
+test("a point of a plane is found again under the pointer, and never beyond the edges", () => {
+  assert.deepEqual(onPlane([0, 0], 2), [160, 160]);
+  assert.deepEqual(onPlane([2, 1], 2), [320, 80]);
+  for (const at of [
+    [0, 0],
+    [1.5, -0.5],
+  ])
+    assert.deepEqual(
+      underPoint(
+        onPlane(at, 2).map((x) => x / 320),
+        2,
+      ),
+      at,
+    );
+  assert.deepEqual(underPoint([1.2, -3], 2), [2, 2]);
 });

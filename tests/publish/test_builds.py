@@ -176,3 +176,30 @@ def test_every_exercise_of_the_course_is_in_the_instructor_build(tmp_path: Path)
         asked = [key for c in built if c.cell_type == "code" for key, _ in builds.checks(c)]
         assert all(asked.count(key) == 2 for key in asked)
         nbformat.validate(json.loads(path.read_text("utf-8")))
+
+
+OPEN = [  # the cells of the chapters that ask in words, and no widget takes the answer
+    (path.stem[:2], cell.id)
+    for path in sorted((ROOT / "notebooks").glob("[0-9]*.ipynb"))
+    for cell in nbformat.read(path, as_version=4).cells
+    if cell.cell_type == "markdown"
+    and re.search(r"\?", re.split(r"## Exit questions|\*\*On paper:\*\*", cell.source)[-1])
+    and re.search(r"## Exit questions|\*\*On paper:\*\*|^1\. .*\?", cell.source, re.MULTILINE)
+]
+
+
+def test_every_open_question_has_an_answer_for_the_instructor_alone() -> None:
+    assert len(OPEN) >= 9
+    for path in sorted((ROOT / "notebooks").glob("*.ipynb")):
+        chapter = path.stem.partition("_")[0]
+        asked = [cell for number, cell in OPEN if number == chapter]
+        assert sorted(builds.open_answers(chapter)) == sorted(asked), chapter
+        notebook = nbformat.read(path, as_version=4)
+        theirs = builds.with_solutions(builds.clean(notebook), chapter)
+        ids = [cell.id for cell in theirs.cells]
+        for cell in asked:
+            answer = theirs.cells[ids.index(cell) + 1]
+            assert answer.cell_type == "markdown"
+            assert len(answer.source) > 80
+        assert builds.clean(theirs).cells == builds.clean(notebook).cells
+        nbformat.validate(theirs)

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import ipywidgets as widgets
@@ -18,7 +19,7 @@ import ikteach.course
 import ikteach.view
 from ikteach import figures
 from ikteach.body.figures import Figure
-from ikteach.course import predict, quiz
+from ikteach.course import predict, quiz, show_me
 from ikteach.motion.live.session import Session
 from ikteach.motion.reach.planar import PlanarReach
 from ikteach.study.experiment import Round
@@ -42,6 +43,7 @@ from ikteach.view.widgets.ball import RotationBall
 from ikteach.view.widgets.closing import Living, living, occupant
 from ikteach.view.widgets.curve import Curve
 from ikteach.view.widgets.picture import Picture
+from ikteach.view.widgets.plane import Plane
 from ikteach.view.widgets.prose import Prose
 from ikteach.view.widgets.status import Status
 from ikteach.view.widgets.table import Rows
@@ -83,6 +85,7 @@ FIGURES: dict[Any, Callable[[], Any]] = {
     ikteach.view.Scene: lambda: ikteach.view.Scene(*arm()),
     ikteach.view.Simulator: lambda: ikteach.view.Simulator(PlanarReach()),
     ikteach.view.StillScene: still,
+    ikteach.view.SvdBench: ikteach.view.SvdBench,
     ikteach.view.Workbench: ikteach.view.Workbench,
     CapPlayer: CapPlayer,
     Race: Race,
@@ -96,6 +99,7 @@ FIGURES: dict[Any, Callable[[], Any]] = {
     Recorder: lambda: Recorder(Session()),
     Replay: lambda: Replay(log()),
     Targets: lambda: Targets(ikteach.view.Scene(*arm()), [[1.0, 1.0, 0.0]]),
+    show_me: lambda: show_me(SimpleNamespace(slot="own"), {"Look.": {}}),
     predict: lambda: predict("00.test", "Which?", ["one", "other"]),
     quiz: lambda: quiz("00.test", "Which?", ["one", "other"], "one", "It is so."),
 }
@@ -107,6 +111,7 @@ PARTS: dict[Any, Callable[[], Any]] = {
     Driver: lambda: ikteach.view.Scene(*arm(), slot=None).driver,
     Handles: lambda: Targets(ikteach.view.Scene(*arm(), slot=None), [[1, 1, 0]], slot=None).handles,
     Picture: Picture,
+    Plane: lambda: Plane(title="plane"),
     Prose: Prose,
     Rows: Rows,
     Status: Status,
@@ -115,7 +120,7 @@ PARTS: dict[Any, Callable[[], Any]] = {
 # In notebooks too, but what they give back is no widget.
 NO_WIDGETS = {
     "Ledger", "bars", "check", "export", "film", "heat", "lines", "order_chart", "phase_plot",
-    "reveal", "source",
+    "plainly", "reveal", "source",
 }  # fmt: skip
 
 
@@ -186,8 +191,9 @@ def test_none_is_forgotten() -> None:
     }
     assert len(imported) > 10
     assert imported <= known
-    # Of Simulator; of predict and quiz.
+    # Of Simulator; of predict and quiz; of show_me.
     within = {"ikteach.view.chapters.reach.CursorScene", "ikteach.course.widget.Question"}
+    within |= {"ikteach.course.buttons.Tries"}
     assert all_that_live() - within <= known
 
 

@@ -31,7 +31,7 @@ def main(argv: list[str]) -> int:
         return 0
     ports.check_server("JupyterLab", "jupyterlab", "lab", options.port)
     folder = prepare(course, options.folder)
-    first = next(iter(titles))
+    first = min(titles, key=lambda name: (not name[0].isdigit(), name))  # chapter 0
     print(f"opening {folder / first} in JupyterLab; Ctrl-C here ends it", flush=True)
     code = run(_command(folder, first, options.port, extra), environment(course))
     as_root = hasattr(os, "geteuid") and os.geteuid() == 0  # Windows has no user numbers

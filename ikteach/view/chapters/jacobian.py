@@ -12,6 +12,7 @@ from ikteach.markup import Markup
 from ikteach.view.live.bench import Bench, Shown
 from ikteach.view.live.joints import Joints
 from ikteach.view.live.panel import choice, dropdown, log_slider
+from ikteach.view.live.pull import handles_of, pull
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import doors
 
@@ -29,6 +30,7 @@ class ColumnPoser(Bench):
         tree, effectors = figure = doors.figure(figure)
         joints = Joints(figure)
         scene = Scene(*figure, width=460, height=480, slot=None)
+        handles = handles_of(scene, joints)
         names = list(effectors.names)
         options = {
             "effector": dropdown("effector", names, names[-1]),
@@ -43,7 +45,9 @@ class ColumnPoser(Bench):
             J = jacobian(tree, frames, effectors)[rows]
             differences = by_differences(tree, theta, effectors, h=h)[rows]
             columns = J if way == WAYS[0] else differences
-            scene.show(theta, locate(frames, effectors), effector=i, columns=columns)
+            s = locate(frames, effectors)
+            handles.follow(s)
+            scene.show(theta, s, effector=i, columns=columns)
             least = 1e-9 * scene.stage.unit  # of what is no rounding [m/rad]
             moved = np.flatnonzero(abs(J).max(axis=0) > least)
             words = (
@@ -54,7 +58,8 @@ class ColumnPoser(Bench):
 
         panel = [*options.values(), joints.widget]
         super().__init__(show, options | joints.controls, slot=slot, scene=scene, panel=panel)
-        self.joints = joints
+        self.joints, self.targets = joints, handles
+        pull(self, handles, joints)
         scene.switch("columns of J")
 
     def theta(self) -> Array:

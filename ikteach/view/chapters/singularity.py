@@ -14,6 +14,7 @@ from ikteach.view.live.canvas import Canvas
 from ikteach.view.live.panel import slider
 from ikteach.view.stage.colours import PURPLE, SKY, effector_colour
 from ikteach.view.webgl.scene import Scene
+from ikteach.view.webgl.targets import Targets
 
 LEAST = 1e-5  # [rad] shorter bars are not seen
 SIZE = 0.1  # ‖e‖ [m]
@@ -29,6 +30,7 @@ class BendBench(Bench):
     def __init__(self, *, slot: str | None = "bend") -> None:
         tree, effectors = arm = planar_arm(2)
         chart, scene = SingularityPlot(), Scene(*arm, width=460, height=400, slot=None)
+        handles = Targets(scene, [[2.0 - SIZE, 0.0, 0.0]], slot=None)
         controls = {
             "bend": slider("bend of the elbow [°]", 40, -180, 180, 1),
             "way": slider("direction of the error [°]", 180, -180, 180, 5),
@@ -42,6 +44,7 @@ class BendBench(Bench):
             sigma = np.linalg.svdvals(J)
             steps = {name: solver(J, e) for name, solver in SOLVERS.items()}
             lengths = {name: float(np.linalg.norm(step)) for name, step in steps.items()}
+            handles.follow(s + e)
             scene.show(theta, s + e, columns=J, ellipsoid=ellipsoid(J))
             listed = ", ".join(f"{name} {length:.3g} rad" for name, length in lengths.items())
             words = (
@@ -53,6 +56,15 @@ class BendBench(Bench):
             return Shown(chart.png(sigma, [*lengths.values()]), words, words)
 
         super().__init__(show, controls, slot=slot, scene=scene)
+        self.targets = handles
+
+        @handles.on_change
+        def pulled(_: int, place: Array) -> None:
+            """Turn the error towards where its end was pulled."""
+            hand = locate(forward(tree, np.radians([0, self.values["bend"]])), effectors)[0]
+            x, y, _ = place - hand
+            controls["way"].value = round(np.degrees(np.arctan2(y, x)))
+
         scene.switch("ellipsoid")
         scene.switch("columns of J")
 

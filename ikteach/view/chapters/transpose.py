@@ -95,6 +95,10 @@ class TransposePlot:
         """Go back to the bent arm."""
         self.theta, self.steps = BENT, 0
 
+    def straighten(self) -> None:
+        """Stretch the arm along x, where a target inward cannot be neared."""
+        self.theta, self.steps = np.zeros(3), 0
+
     def _stepped(self) -> Array:
         gain, targets = self._asked
         tree, effectors = self.arm
@@ -106,7 +110,8 @@ class TransposePlot:
 def slope_bench() -> Bench:
     """Make the bench of chapter 3.
 
-    Its sliders are the gain and the target's place, its buttons take the step and start again.
+    Its sliders are the gain and the target's place, its buttons take the step,
+    start again, and stretch the arm.
     """
     plot = TransposePlot()
     controls = {
@@ -115,4 +120,5 @@ def slope_bench() -> Bench:
         "y": slider("target y [m]", 2.2, -1.5, 2.5, 0.05),
     }
     buttons = {"Take the step": plot.take, "Start again": plot.reset}
+    buttons["Straight arm"] = plot.straighten
     return Bench(plot.show, controls, slot="slope", buttons=buttons)

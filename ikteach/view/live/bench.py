@@ -113,13 +113,12 @@ class Bench(Cell):
     def _laid_out(self, rows: list[widgets.Widget]) -> list[widgets.Widget]:
         """All parts: the picture or the scene first, a chart beside the scene."""
         scene, below = self.scene, self._below
+        chart = [self._picture] if self._picture.png else []
         if scene is None:
             assert self.note is not None
-            seen = [self._picture, self.note.widget]
-            return [Arranged(seen, [*rows, below], chart=True), self.status]
+            return [Arranged([*chart, self.note.widget], [*rows, below], chart=True), self.status]
         scene.driver.on_page = self._seen
         scene.widget.add_class("ikteach-told")  # what its words say, `below` shows
-        chart = [self._picture] if self._picture.png else []
         return [Arranged([scene.widget], [*rows, *chart, below]), self.status]
 
 

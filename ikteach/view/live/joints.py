@@ -46,6 +46,12 @@ class Joints:
         of_rows = [values[self._lead.get(name, name)] for name in tree.names]
         return np.clip(self._each * of_rows, tree.lower, tree.upper)
 
+    def put(self, theta: Array) -> None:
+        """Set the sliders to a pose (n,) [rad or m]."""
+        values = dict(zip(self.figure.tree.names, theta / self._each, strict=True))
+        for name, control in self.controls.items():
+            control.value = min(max(float(values[name]), control.min), control.max)
+
 
 class Dial(NamedTuple):
     """A joint, as a person sets it.

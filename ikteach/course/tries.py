@@ -1,0 +1,74 @@
+"""What to try with a live figure: sentences, each with a button that does it."""
+
+from collections.abc import Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from ikteach.checks import shown
+from ikteach.names import unknown
+
+if TYPE_CHECKING:
+    from ikteach.course.buttons import Tries
+
+Setting = Mapping[str, Any]
+
+
+def show_me(figure: Any, tries: Mapping[str, Setting]) -> "Tries":
+    """Put a button beside each sentence that sets the figure so.
+
+    figure  a live one, of this or an earlier cell
+    tries   {sentence: {name of a control: its value}}, in the order in which they are set; for a
+            button the value is how often it is pressed, for a target where it goes [m]
+    LookupError for a control that the figure does not have.
+    """
+    from ikteach.course.buttons import Tries
+
+    for setting in tries.values():
+        known(figure, setting)
+    return Tries(figure, {sentence: partial(put, figure, tries[sentence]) for sentence in tries})
+
+
+def known(figure: Any, setting: Setting) -> None:
+    """Check that the figure has these controls."""
+    if not isinstance(setting, Mapping):
+        raise TypeError(f"a setting is {{control: value}}, not {shown(setting)}")
+    for name in setting:
+        if name not in (names := [*controls(figure), *targets(figure)]):
+            raise LookupError(unknown("control", name, names))
+
+
+def put(figure: Any, setting: Setting) -> None:
+    """Set the controls of a live figure, as a person would."""
+    known(figure, setting)
+    of_figure, places = controls(figure), targets(figure)
+    for name, value in setting.items():
+        if name in places:
+            figure.targets.move(places.index(name), value)
+        elif hasattr(of_figure[name], "click"):
+            for _ in range(value):
+                of_figure[name].click()
+        else:
+            of_figure[name].value = value
+
+
+def controls(figure: Any) -> dict[str, Any]:
+    """Return the controls of a figure, and of its parts."""
+    panels = [*getattr(figure, "panels", {}).values()]
+    inner = [
+        part for part in (getattr(figure, "player", None), getattr(figure, "bar", None)) if part
+    ]
+    found: dict[str, Any] = {}
+    for part in (figure, *panels, *inner):
+        for name, control in {**getattr(part, "controls", {}), **_buttons(part)}.items():
+            found.setdefault(name, control)
+    return found
+
+
+def targets(figure: Any) -> list[str]:
+    """Return the names of the targets that can be moved."""
+    return [*getattr(getattr(figure, "targets", None), "names", ())]
+
+
+def _buttons(part: Any) -> Mapping[str, Any]:
+    found = getattr(part, "buttons", {})
+    return found if isinstance(found, Mapping) else {}

@@ -1,0 +1,72 @@
+"""The bench of circle and ellipse, and the buttons of what to try, by mouse and by keys."""
+
+from typing import Any
+
+import pytest
+
+from tests.browser.conftest import READY, Notebook
+
+BENCH = "display(svd := SvdBench())"
+
+
+@pytest.fixture(scope="module")
+def chapter(open_notebook: Any) -> Notebook:
+    notebook = open_notebook("02_singularity.ipynb")
+    notebook.run_cell(BENCH)
+    notebook.page.locator(".ikteach-knob").wait_for(timeout=READY)
+    return notebook
+
+
+def test_the_point_is_dragged_and_moved_by_keys(chapter: Notebook) -> None:
+    page, knob = chapter.page, chapter.page.locator(".ikteach-knob")
+    knob.scroll_into_view_if_needed()
+    box = page.locator(".ikteach-plane").first.bounding_box()
+    at = knob.bounding_box()
+    assert box
+    assert at
+    page.mouse.move(at["x"] + at["width"] / 2, at["y"] + at["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.25 * box["width"], box["y"] + 0.5 * box["height"], steps=5)
+    page.mouse.up()
+    chapter.settle("round(svd.controls['x'].value, 1)", -0.8)
+    chapter.settle("round(svd.controls['y'].value, 1)", 0.0)
+    before = chapter.kernel("svd.controls['y'].value")
+    knob.focus()
+    page.keyboard.press("ArrowUp")
+    chapter.settle(f"round(svd.controls['y'].value - {before}, 3)", 0.05)
+    page.keyboard.press("Shift+ArrowUp")
+    chapter.settle(f"round(svd.controls['y'].value - {before}, 3)", 0.055)
+    said = knob.get_attribute("aria-valuetext")
+    assert said == chapter.kernel("svd.held.said")
+    assert "σ₁" in (page.locator(".ikteach-plane").first.get_attribute("aria-label") or "")
+    chapter.shot("02_svd")
+    assert chapter.errors == []
+
+
+def test_show_me_sets_the_figure_by_key(chapter: Notebook) -> None:
+    button = chapter.page.get_by_role("button", name="Show me 3").last
+    button.focus()
+    chapter.page.keyboard.press("Enter")
+    chapter.settle("svd.controls['bend'].value", 0)
+    chapter.shot("02_svd_straight")
+    assert "σ₂ = 0.000" in chapter.kernel("svd.words")
+    chapter.page.get_by_role("status").get_by_text("The figure is set as in 3.").last.wait_for(
+        timeout=READY
+    )
+    assert chapter.kernel("svd.status.wrong") == ""
+    assert chapter.errors == []
+
+
+def test_a_hand_is_pulled_by_keys_and_the_sliders_follow(open_notebook: Any) -> None:
+    notebook = open_notebook("00_figure.ipynb")
+    notebook.run_figure("Poser(figures.human())")
+    before = notebook.kernel("poser.targets.positions[0].tolist()")
+    notebook.page.locator(".ikteach-stage").first.focus()
+    notebook.page.keyboard.press("Tab")
+    for _ in range(4):
+        notebook.page.keyboard.press("ArrowUp")
+    notebook.settle(f"poser.targets.positions[0][1] > {before[1]} + 0.1", True)
+    assert notebook.kernel("sum(bool(c.value) for c in poser.controls.values())") > 0
+    notebook.shot("00_pulled")
+    assert notebook.kernel("poser.status.wrong") == ""
+    assert notebook.errors == []
