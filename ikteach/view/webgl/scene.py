@@ -78,7 +78,7 @@ class Scene(Living):
         self.look_from(stage.side)
         self.driver = Driver(self.renderer, description=stage.words)
         self.driver.on_page = self._greet
-        self.driver.observe(lambda page: self._chosen or self._paint(page["new"]), "dark")
+        self.driver.observe(self._follow_page, "dark")
         self.driver.as_png = lambda: self.still().png
         self._plan()
         self.note = Note()
@@ -145,6 +145,11 @@ class Scene(Living):
     def dark(self, on: bool) -> None:
         self._chosen = True
         self._paint(on)
+
+    def _follow_page(self, change: Any) -> None:
+        """Be as dark as the page, unless somebody has chosen."""
+        if not self._chosen:
+            self._paint(change["new"])
 
     def _paint(self, on: bool) -> None:
         if on != self._dark:
