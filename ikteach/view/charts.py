@@ -44,7 +44,8 @@ def lines(
         for name, part in ((name, table[name].dropna()) for name in table)
         if len(part)
     )
-    return Still(png_of(figure), f"{title}: {ylabel} over {xlabel}. {'; '.join(words)}.", chart=True)
+    alt = f"{title}: {ylabel} over {xlabel}. {'; '.join(words)}."
+    return Still(png_of(figure), alt, chart=True)
 
 
 def bars(
@@ -113,7 +114,8 @@ def phase_plot(table: pd.DataFrame) -> Still:
         + ", ".join(f"{name} {error.mean():.3f} m" for name, error in table[method].items())
         for method in methods
     )
-    return Still(png_of(figure), f"Distance to target over the gait cycle. Means: {words}.", chart=True)
+    alt = f"Distance to target over the gait cycle. Means: {words}."
+    return Still(png_of(figure), alt, chart=True)
 
 
 def outline(tree: Tree, effectors: Effectors, theta: Array) -> Array:

@@ -248,7 +248,7 @@ class Workbench(Live):
         self.view.renew()
 
     def _stage(self) -> list[widgets.Widget]:
-        """What stands where the figure is: the picture, the clock, and a run looked at."""
+        """List the picture, the clock, and a run that is looked at."""
         return [self.scene.widget, self.bar.widget, self._aside]
 
     def _targets(self) -> Targets:

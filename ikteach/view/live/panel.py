@@ -233,5 +233,5 @@ def _look(
 ) -> dict[str, Any]:
     """Give the traits of a slider of this label: as wide as that, or as the page has room."""
     style = {"description_width": label_width}
-    layout = {"width": width, "max_width": "100%"}
+    layout = {"width": width, "max_width": "calc(100% - 4px)"}  # but for its margins
     return {"description": label, "style": style, "layout": layout, **traits}

@@ -82,7 +82,7 @@ class Scene(Living):
         self.driver = Driver(self.renderer, description=stage.words, effectors=colours)
         self.driver.on_page, self.driver.on_act = self._greet, self._perform
         self.driver.observe(lambda _: self._send(), "measuring")
-        self.driver.observe(lambda page: self._chosen or self._paint(page["new"]), "dark")
+        self.driver.observe(self._follow_page, "dark")
         self._acts: dict[str, Callable[[], object]] = {}
         self.driver.as_png = lambda: self.still().png
         self._plan()
@@ -151,6 +151,11 @@ class Scene(Living):
     def dark(self, on: bool) -> None:
         self._chosen = True
         self._paint(on)
+
+    def _follow_page(self, change: Any) -> None:
+        """Be as dark as the page, unless somebody has chosen."""
+        if not self._chosen:
+            self._paint(change["new"])
 
     def _paint(self, on: bool) -> None:
         if on != self._dark:
