@@ -37,7 +37,7 @@ class Recording(NamedTuple):
     @property
     def times(self) -> Array:
         """Time of each frame, the first at 0, (T,) [s]."""
-        return self.dt * np.arange(len(self.theta))
+        return np.asarray(self.dt * np.arange(len(self.theta)), dtype=float)
 
 
 class Line(NamedTuple):
@@ -66,7 +66,7 @@ class Line(NamedTuple):
 
 
 class Node(NamedTuple):
-    """A joint of the file while it is read: its name, the row that carries it, where it is in it."""
+    """A joint of the file while it is read: its name, and its place in the row that carries it."""
 
     name: str
     row: str | None
@@ -77,7 +77,7 @@ class Skeleton(NamedTuple):
     """What the first part of a file says: rows, End Sites, and the channel that turns each row."""
 
     rows: list[Joint]
-    sites: dict[str, tuple[str, Array]]
+    sites: dict[str, tuple[str, Sequence[float]]]
     columns: list[int]
 
 
@@ -100,7 +100,7 @@ def read_bvh(source: str | Path, *, scale: float = 1.0) -> Recording:
     tree = Tree.of(skeleton.rows)
     if not skeleton.sites:
         last = skeleton.rows[-1].name
-        skeleton.sites[f"{last}.end"] = (last, np.zeros(3))
+        skeleton.sites[f"{last}.end"] = (last, (0, 0, 0))
     theta = table[:, skeleton.columns] * units
     return Recording(tree, Effectors.of(tree, skeleton.sites), theta, dt)
 
@@ -165,7 +165,7 @@ def _skeleton(lines: Iterator[Line], scale: float) -> Skeleton:
         elif word == "}" and stack:
             node = stack.pop()
             if ends and node.row is not None:
-                found.sites[node.name] = (node.row, node.offset)
+                found.sites[node.name] = (node.row, node.offset.tolist())
             ends = False
         elif word == "OFFSET" and stack:
             node = stack[-1]
@@ -196,7 +196,7 @@ def _hang(found: Skeleton, node: Node, line: Line, column: int) -> tuple[Node, i
         raise line.wrong("a channel stands here twice")
     for turns, at, axis in sorted(channels, key=lambda channel: channel[0]):
         name = f"{node.name}.{axis}{'' if turns else 'pos'}"
-        found.rows.append(Joint(name, node.row, node.offset, AXES[axis], slide=not turns))
+        found.rows.append(Joint(name, node.row, node.offset.tolist(), AXES[axis], slide=not turns))
         found.columns.append(at)
         node = Node(node.name, name, np.zeros(3))
     return node, column + len(channels)
@@ -221,7 +221,7 @@ def _frame_lines(lines: Iterator[Line]) -> tuple[int, float]:
 
 def _table(lines: Iterator[Line], frames: int, columns: int) -> Array:
     """The values of the channels, (frames, columns)."""
-    rows = []
+    rows: list[list[float]] = []
     for line in lines:
         if len(rows) == frames:
             raise line.wrong(f"there are more than the {frames} frames that were announced")
@@ -385,7 +385,7 @@ def _letter(axis: Array) -> str | None:
 
 
 def zyx(R: Array) -> Array:
-    """The angles (..., 3) about z, y and x with R = Rz Ry Rx, without leaps along the first axis."""
+    """Find the angles (..., 3) about z, y and x with R = Rz Ry Rx; they do not leap in time."""
     y = np.arctan2(-R[..., 2, 0], np.hypot(R[..., 0, 0], R[..., 1, 0]))
     z = np.arctan2(R[..., 1, 0], R[..., 0, 0])
     x = np.arctan2(R[..., 2, 1], R[..., 2, 2])

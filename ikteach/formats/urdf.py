@@ -104,7 +104,7 @@ def read_urdf(source: str | Path) -> Robot:
     tree = Tree.of(rows)
     parents = {edge.parent for edge in edges}
     ends = {
-        name: (tree.names[link.row], link.d)
+        name: (tree.names[link.row], link.d.tolist())
         for name, link in links.items()
         if name not in parents and link.row is not None
     }
@@ -186,7 +186,7 @@ def _hang(edge: Edge, above: Link, rows: list[Joint]) -> Link:
     lower, upper = _limits(edge, kind)
     parent = None if above.row is None else rows[above.row].name
     rows.append(
-        Joint(edge.name, parent, at, axis, slide=kind == "prismatic", lower=lower, upper=upper)
+        Joint(edge.name, parent, at.tolist(), axis.tolist(), slide=kind == "prismatic", lower=lower, upper=upper)
     )
     return Link(len(rows) - 1, C, np.zeros(3))
 
