@@ -186,7 +186,15 @@ def _hang(edge: Edge, above: Link, rows: list[Joint]) -> Link:
     lower, upper = _limits(edge, kind)
     parent = None if above.row is None else rows[above.row].name
     rows.append(
-        Joint(edge.name, parent, at.tolist(), axis.tolist(), slide=kind == "prismatic", lower=lower, upper=upper)
+        Joint(
+            edge.name,
+            parent,
+            at.tolist(),
+            axis.tolist(),
+            slide=kind == "prismatic",
+            lower=lower,
+            upper=upper,
+        )
     )
     return Link(len(rows) - 1, C, np.zeros(3))
 
