@@ -45,7 +45,7 @@ MOST = 15  # modules in one folder
 SCREEN = {"matplotlib", "ipywidgets", "pythreejs", "anywidget", "traitlets", "IPython"}
 HEAVY = ["pandas", "matplotlib", "ipywidgets", "pythreejs", "anywidget", "traitlets"]
 OTHERS = {  # what a room may import from elsewhere, beside numpy and the standard library
-    "formats": {"av"},
+    "formats": {"av", "pygltflib"},
     "study": {"pandas"},
     "view": SCREEN | {"pandas", "PIL"},
     "course": SCREEN | {"pandas"},
