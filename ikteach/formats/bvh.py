@@ -444,7 +444,7 @@ class _Writer:
     def _name(self, rows: list[int]) -> str:
         """Name a group by what its rows' names have in common, or by its last row."""
         names = [self.tree.names[j] for j in rows]
-        stems = {re.sub(r"\.[xyz](pos)?$", "", name) for name in names}
+        stems = {re.sub(r"\.[xyz](pos|\.slide)?$", "", name) for name in names}
         return re.sub(r"[\s{}]+", "_", stems.pop() if len(stems) == 1 else names[-1])
 
     def _place(self, offset: Array) -> str:
@@ -501,8 +501,8 @@ def _groups(tree: Tree, effectors: Effectors) -> list[list[int]]:
 
 
 def _points(effectors: Effectors, joint: int) -> list[int]:
-    """Find the effectors of a joint."""
-    return np.flatnonzero(effectors.joints == joint).tolist()
+    """Find the effectors of a joint that are points."""
+    return np.flatnonzero((effectors.joints == joint) & (effectors.w == 1)).tolist()
 
 
 def _letter(axis: Array) -> str:

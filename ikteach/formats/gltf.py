@@ -70,7 +70,7 @@ class _Model:
         self.data = bytearray()
 
     def body(self, tree: Tree, effectors: Effectors) -> dict[str, int]:
-        """Add nodes for the rows, then for effectors, bones, and the ground."""
+        """Add nodes for rows, the ground, effectors and bones."""
         nodes = self.gltf.nodes
         for j, name in enumerate(tree.names):
             below = np.flatnonzero(tree.parents == j).tolist()
@@ -80,10 +80,10 @@ class _Model:
         tops = np.flatnonzero(tree.parents < 0).tolist()
         nodes.append(self.lib.Node(name="ground", children=tops))
         ground = len(nodes) - 1
-        for name, joint, offset in zip(
-            effectors.names, effectors.joints.tolist(), effectors.offsets, strict=True
-        ):
-            self._hang(joint, name=name, translation=offset.tolist())
+        for i, name in enumerate(effectors.names):
+            if effectors.w[i]:
+                place = effectors.offsets[i].tolist()
+                self._hang(int(effectors.joints[i]), name=name, translation=place)
         for joint, end in bones(tree, effectors):
             self._hang(joint if joint >= 0 else ground, mesh=self._mesh(octahedron(end)))
         return {"ground": ground}
@@ -107,7 +107,7 @@ class _Model:
     def put(
         self, values: ArrayLike, kind: str, target: int | None = None, *, bounds: bool = False
     ) -> int:
-        """Add numbers, as floats of four bytes; return the index of their accessor."""
+        """Add numbers, as floats of four bytes; return their index."""
         floats = np.ascontiguousarray(values, dtype="<f4")
         ends = {"min": floats.min(axis=0), "max": floats.max(axis=0)} if bounds else {}
         self.gltf.bufferViews.append(
@@ -151,7 +151,8 @@ def bones(tree: Tree, effectors: Effectors) -> Iterator[tuple[int, Array]]:
     It is a joint, or -1 for the ground.
     """
     ends = [*zip(tree.parents.tolist(), tree.offsets, strict=True)]
-    ends += zip(effectors.joints.tolist(), effectors.offsets, strict=True)
+    points = effectors.w == 1
+    ends += zip(effectors.joints[points].tolist(), effectors.offsets[points], strict=True)
     for joint, end in ends:
         if np.linalg.norm(end) > SHORTEST:
             yield joint, end

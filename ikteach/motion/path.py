@@ -96,7 +96,7 @@ class Path:
                 f" {len(effectors)} effectors: {shown(', '.join(effectors.names))}"
             )
         rest = forward(tree, tree.rest)
-        points = np.concatenate([rest.positions, locate(rest, effectors)])
+        points = np.concatenate([rest.positions, locate(rest, effectors)[effectors.w == 1]])
         return Course(self.at, float(points[:, 1].min()))
 
     def mobility(self, tree: Tree) -> Array:

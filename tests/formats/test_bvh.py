@@ -130,6 +130,14 @@ def test_a_long_chain_is_written_and_read():
         read_bvh("HIERARCHY\n" + "ROOT a\n{\nOFFSET 0 0 0\n" + "JOINT a\n{\nOFFSET 0 0 0\n" * 5000)
 
 
+def test_a_direction_is_no_end():
+    tree, effectors = figures.walker()
+    run = Recording(tree, effectors, tree.rest[None], 0.1)
+    again = read_bvh(write_bvh(run))
+    assert len(again.effectors) == 7 + 2  # its points, and the ends of the arms
+    assert again.tree.names[:6] == tuple(f"pelvis.{c}" for c in ["xpos", "ypos", "zpos", *"yxz"])
+
+
 def test_a_way_is_added_below_the_figure():
     leg = read_bvh(LEG, scale=0.01)
     way = np.array([[0, 0, 0], [0, 0, 1.5]])
