@@ -21,6 +21,7 @@ FLOORS = [  # from the ground up; rooms of one floor do not know each other
     TOOLS,
     {"body", "solvers"},
     {"motion"},
+    {"motion.paths"},
     {"motion.live", "motion.reach"},
     {"formats", "study"},
     {"view.stage", "view.widgets"},

@@ -120,6 +120,7 @@ def human() -> Figure:
 
 
 HEEL, BALL = (0, -0.0702, -0.0684), (0, -0.0702, 0.1286)  # in the frame of a human's ankle [m]
+HAND = (0, -0.3612, 0)  # from the elbow [m]
 TOE = (0, 0, 0.0767)  # its tip, from the ball of the foot [m]
 GAZE = 0.3  # length of the pelvis's directions: 1° off weighs as much as 5 mm [m]
 
@@ -184,8 +185,8 @@ def walker() -> Figure:
     The human's 20 hinges; six rows of the pelvis (`floating`); in each foot one that tilts it
     sideways and one at its ball that bends the toes. Hips, knees and elbows are bent at rest: a
     straight knee is singular, and at its limit. The effectors are what a walk has targets for
-    (`ikteach.motion.paths.walk`): the pelvis, the heels, balls and tips of the feet, and which way
-    the pelvis points up and ahead.
+    (`ikteach.motion.paths.walk`): the pelvis, the heels and balls of the feet, and which way the
+    pelvis points up and ahead. Trunk, arms and toes follow a wish.
     """
     tree = floating(human(), name="pelvis").tree
     bent = {"hip.bend": 15, "knee": 20, "elbow": 20}
@@ -196,7 +197,6 @@ def walker() -> Figure:
         rows.append(_hinge(foot, f"ankle.{side}", (0, 0, 0), (0, 0, x), -20, 35))
         rows.append(_hinge(toes, foot, BALL, (-1, 0, 0), -30, 70))
         points |= {f"heel.{side}": (foot, HEEL), f"ball.{side}": (foot, BALL)}
-        points |= {f"toe.{side}": (toes, TOE)}
     tree = Tree.of(rows)
     up, ahead = ("pelvis.z", (0, GAZE, 0)), ("pelvis.z", (0, 0, GAZE))
     directions = {"pelvis.up": up, "pelvis.ahead": ahead}
@@ -340,12 +340,11 @@ def _leg(side: str, x: int) -> list[Joint]:
 
 def _feet_and_hands(tree: Tree) -> Effectors:
     """Find the balls of the feet and the hands, in the order of the thesis."""
-    hand = (0, -0.3612, 0)
     points = {
         "foot.l": ("ankle.l", BALL),
         "foot.r": ("ankle.r", BALL),
-        "hand.r": ("elbow.r", hand),
-        "hand.l": ("elbow.l", hand),
+        "hand.r": ("elbow.r", HAND),
+        "hand.l": ("elbow.l", HAND),
     }
     return Effectors.of(tree, points)
 

@@ -227,6 +227,11 @@ class Effectors:
         )
 
     @cached_property
+    def alike(self) -> Array:
+        """Weights (k,) of effectors that all weigh 1."""
+        return frozen(np.ones(len(self)))
+
+    @cached_property
     def directed(self) -> bool:
         """Whether there are directions among them."""
         return not self.w.all()

@@ -20,6 +20,7 @@ class Here(NamedTuple):
     tree, effectors  the body
     frames           where its joints are
     low, high        (..., n) how far each joint may turn down and up in this step [rad]
+    weights          (..., k) of the targets, by which e and the rows of J are multiplied
     """
 
     tree: Tree
@@ -27,6 +28,7 @@ class Here(NamedTuple):
     frames: Frames
     low: Array
     high: Array
+    weights: Array
 
     @classmethod
     def of(
@@ -37,16 +39,18 @@ class Here(NamedTuple):
         theta: Array,
         limits: LimitRule,
         bounds: Bounds,
+        weights: Array | None = None,
     ) -> "Here":
         """Look around from θ; without limits joints turn any way."""
         low, high = (-np.inf, np.inf) if limits is ignore else (bounds.lower, bounds.upper)
-        return cls(tree, effectors, frames, low - theta, high - theta)
+        weights = effectors.alike if weights is None else weights
+        return cls(tree, effectors, frames, low - theta, high - theta, weights)
 
     def at(self, i: int) -> "Here":
         """Pose i of a batch (p, n)."""
         frames = Frames(*(part[i] for part in self.frames))
-        low, high = (end[i] if end.ndim > 1 else end for end in (self.low, self.high))
-        return Here(self.tree, self.effectors, frames, low, high)
+        own = (end[i] if end.ndim > 1 else end for end in (self.low, self.high, self.weights))
+        return Here(self.tree, self.effectors, frames, *own)
 
 
 def wants(solver: Any) -> tuple[str, ...]:

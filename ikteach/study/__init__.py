@@ -5,10 +5,12 @@ measures    summaries of logs and runs
 sessions    ticks, poses and events of a live figure
 directions  one step by singular directions (chapter 6)
 reach       the simulator of chapter 10
+gaits       how natural a run is (chapter 11)
 experiment  runs made to be compared, and `trials`, the fair experiment (chapter 8)
 """
 
 from ikteach.study.directions import by_direction
+from ikteach.study.gaits import gait_report
 from ikteach.study.measures import (
     MEASURES,
     by_phase,
@@ -32,6 +34,7 @@ __all__ = [
     "distances",
     "events",
     "follow",
+    "gait_report",
     "log",
     "many",
     "ranges",
