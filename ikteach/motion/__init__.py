@@ -5,7 +5,7 @@ from ikteach.motion.gait import Gait
 from ikteach.motion.live.session import Session
 from ikteach.motion.path import Motion, Path
 from ikteach.motion.paths import quality
-from ikteach.motion.paths.perform import perform
+from ikteach.motion.paths.perform import imitate, perform
 from ikteach.motion.paths.recorded import Recorded, drawn
 from ikteach.motion.paths.retarget import retarget
 from ikteach.motion.paths.walk import Walk
@@ -30,6 +30,7 @@ __all__ = [
     "growing_clamp",
     "hold",
     "ignore",
+    "imitate",
     "per_chain",
     "perform",
     "quality",

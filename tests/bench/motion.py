@@ -15,7 +15,7 @@ from ikteach.body.partials import by_differences
 from ikteach.formats.bvh import read_bvh, recorded_walk, write_bvh
 from ikteach.motion import gait
 from ikteach.motion.live.session import Session
-from ikteach.motion.paths.perform import perform
+from ikteach.motion.paths.perform import imitate, perform
 from ikteach.motion.paths.retarget import CMU, markers, retarget
 from ikteach.motion.paths.walk import Walk
 from ikteach.study import gait_report
@@ -74,6 +74,7 @@ def walks():
     }
     for speed, walk in speeds.items():
         runs = {name: perform(walk, WALKER, solver, cycles=4) for name, solver in METHODS.items()}
+        runs["the norm itself"] = imitate(walk, WALKER, cycles=4, speed=speed)
         print(f"\nnatural, {walk.speed} m/s, against the norm {speed!r} [m, degrees]")
         print(gait_report(runs, walk, speed=speed).round(4).to_string())
     runs = {

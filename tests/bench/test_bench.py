@@ -112,5 +112,5 @@ def test_motion_prints_what_is_met(capsys, monkeypatch):
     for part in (motion.files, motion.retargeted, motion.walks):
         part()
     told = capsys.readouterr().out
-    assert told.count("\n") == 2 + 4 + 3 * 4 + 4
+    assert told.count("\n") == 2 + 4 + 3 * 5 + 4
     assert "nan" not in told

@@ -22,6 +22,7 @@ from ikteach.motion.track import Track
 NORMS = FilePath(__file__).parents[2] / "data" / "gait_norms.csv"
 SPEEDS = ("Slow", "Free", "Fast")  # of the norms
 CURVES = ("hip", "knee", "ankle", "pelvis")
+ROWS = {"hip": "hip.bend.{}", "knee": "knee.{}", "ankle": "ankle.{}", "pelvis": "pelvis.x"}
 TOUCH = 0.005  # height below which a sole is on the ground [m]
 LOW = 0.01  # height below which a sole is near the ground [m]
 FINER = 50  # times to a frame at which a foot may come down
@@ -61,7 +62,7 @@ def soles(run: Track, path: Motion) -> Soles:
     places[..., 2] += (course.size * path.pace * run.times)[:, None, None]
     down = path.stands(path.rate * run.times)
     stands = [down[:, _columns(path, name)].any(axis=1) for name in points.names]
-    stride = np.mean([np.diff(strikes(run, path, side)).mean() for side in "lr"])
+    stride = np.mean([np.diff(strikes(path, run.times, side)).mean() for side in "lr"])
     return Soles(places, heights, np.stack(stands, -1).reshape(heights.shape), float(stride))
 
 
@@ -86,20 +87,21 @@ def _columns(path: Motion, point: str) -> list[int]:
     return [i for i, name in enumerate(path.names) if name in wanted]
 
 
-def strikes(run: Track, path: Motion, side: str) -> Array:
+def strikes(path: Motion, run_times: Array, side: str) -> Array:
     """Find the times at which a foot is to come down [s].
 
+    It is between the first and the last time of a run's frames (T,) [s].
     ValueError if there are not two of them, or fewer than ten frames between them.
     """
     feet = [i for point in ("heel", "ball") for i in _columns(path, f"{point}.{side}")]
     if not feet:
         raise ValueError(f"{shown(path.name)} has no targets for the feet")
-    times = np.linspace(run.times[0], run.times[-1], FINER * len(run.times))
+    times = np.linspace(run_times[0], run_times[-1], FINER * len(run_times))
     down = np.atleast_1d(path.stands(path.rate * times)[:, feet].any(axis=1))
     # A gap of less than that is no swing: where a recorded foot rolls, no point of it may be still.
     found = times[1:][down[1:] & ~down[:-1]]
     found = found[np.append(True, np.diff(found) > SHORTEST)] if len(found) else found
-    if len(found) < 2 or np.diff(found).min() < 10 * np.diff(run.times).max():
+    if len(found) < 2 or np.diff(found).min() < 10 * np.diff(run_times).max():
         raise ValueError(
             f"the run has no whole stride of {shown(path.name)} of ten frames or more: from where a"
             " foot comes down to where it comes down again"
@@ -227,12 +229,11 @@ def curves(run: Track, path: Motion) -> dict[str, Array]:
     They are means over strides, of the left and of the right side, each from where its foot comes
     down. A body whose pelvis cannot tilt has 0 there. ValueError without a whole stride.
     """
-    names = {"hip": "hip.bend.{}", "knee": "knee.{}", "ankle": "ankle.{}", "pelvis": "pelvis.x"}
     found = {name: np.zeros((2, 51)) for name in CURVES}
     for i, side in enumerate("lr"):
-        begins = strikes(run, path, side)
+        begins = strikes(path, run.times, side)
         times = begins[:-1, None] + np.diff(begins)[:, None] * np.arange(51) / 50
-        for curve, row in names.items():
+        for curve, row in ROWS.items():
             name = row.format(side)
             if curve != "pelvis" or name in run.tree.names:
                 angle = np.degrees(run.theta[:, run.tree.index(name)])

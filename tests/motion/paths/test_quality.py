@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 from ikteach import Effectors, figures
 from ikteach.motion.paths import quality
-from ikteach.motion.paths.perform import perform
+from ikteach.motion.paths.perform import imitate, perform
 from ikteach.motion.paths.recorded import drawn
 from ikteach.motion.paths.walk import Walk
 from ikteach.motion.track import Track
@@ -47,6 +47,15 @@ def test_the_norm_itself_scores_nearly_nothing_and_what_is_off_so_much():
     """Pelvic tilt is one angle for both sides, and the norm's halves differ by some tenths."""
     assert quality.gait_score(norm_itself(), WALK) < 0.3
     assert quality.gait_score(norm_itself(off=5.0), WALK) == pytest.approx(5, abs=0.1)
+
+
+def test_a_score_of_nothing_says_nothing_of_the_feet():
+    """Goodhart: joints on the norm itself, and feet that slip and scrape."""
+    run = imitate(WALK, figures.walker(), cycles=4)
+    natural = perform(WALK, figures.walker(), "dls", cycles=4)
+    assert quality.gait_score(run, WALK) < 0.5
+    assert quality.slip(run, WALK).min() > 5 * quality.slip(natural, WALK).max()
+    assert quality.double_support(run, WALK) < 0.15 < quality.double_support(natural, WALK)
 
 
 def test_a_score_is_of_curves():

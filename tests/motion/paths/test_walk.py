@@ -59,7 +59,7 @@ def test_the_pelvis_keeps_its_frame():
     assert_allclose(np.vecdot(up, ahead), 0, atol=1e-12)
 
 
-@pytest.mark.parametrize("solver", ["sdls", dls_following], ids=str)
+@pytest.mark.parametrize("solver", ["sdls", dls_following], ids=["sdls", "following"])
 def test_a_walker_walks_nearly_as_the_norm(solver):
     """The numbers that are promised, at 30 Hz with two steps a frame."""
     walk = Walk()
