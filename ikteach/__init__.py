@@ -14,10 +14,11 @@ A body is a table of joints, a pose an array, a method a function of the Jacobia
 """
 
 from ikteach.body import Effectors, Frames, Joint, Tree, figures, forward, jacobian, locate
-from ikteach.motion import Gait, Step, Track, gait, reachable, step, track
+from ikteach.motion import Gait, Step, Track, ccd, gait, reachable, step, track
 from ikteach.motion.solve import Solution, solve
 from ikteach.solvers import (
     SOLVERS,
+    bvls,
     conditioning,
     cramer,
     dls,
@@ -41,6 +42,8 @@ __all__ = [
     "Step",
     "Track",
     "Tree",
+    "bvls",
+    "ccd",
     "conditioning",
     "cramer",
     "dls",

@@ -77,11 +77,18 @@ def pose(tree: Tree, theta: ArrayLike) -> Array:
 
 def check_frames(effectors: Effectors, frames: Frames) -> None:
     """Refuse frames that are not of a body of these effectors."""
-    if not isinstance(effectors, Effectors):
-        raise TypeError(f"Effectors are needed here, not {shown(effectors)}")
     if not isinstance(frames, Frames):
         raise TypeError(f"the frames of forward(tree, theta) are needed here, not {shown(frames)}")
-    theirs, n = effectors.carried.shape[1], frames.positions.shape[-2]
+    n = frames.positions.shape[-2]
+    if not isinstance(effectors, Effectors) or effectors.carried.shape[1] != n:
+        check_effectors(effectors, n)
+
+
+def check_effectors(effectors: Effectors, n: int) -> None:
+    """Refuse effectors that are not of a body of n joints."""
+    if not isinstance(effectors, Effectors):
+        raise TypeError(f"Effectors are needed here, not {shown(effectors)}")
+    theirs = effectors.carried.shape[1]
     if theirs != n:
         raise ValueError(f"these effectors are of a body of {theirs} joints, not of {n}")
 

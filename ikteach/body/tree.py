@@ -161,7 +161,7 @@ class Tree:
 class Effectors:
     """The k points and directions of a body that reach for targets.
 
-    Each is fixed to some joint, as a homogeneous point (o, w): s = w p + R o.
+    Each is fixed to some joint, as a homogeneous point o with its w: s = w p + R o.
 
     names             k names
     joints   (k,)     the joint that carries each of them

@@ -1,6 +1,7 @@
 """A figure in motion: one step, many steps, and targets as functions of time."""
 
 from ikteach.motion import gait
+from ikteach.motion.ccd import ccd
 from ikteach.motion.gait import Gait
 from ikteach.motion.live.session import Session
 from ikteach.motion.path import Motion, Path
@@ -24,6 +25,7 @@ __all__ = [
     "Step",
     "Track",
     "Walk",
+    "ccd",
     "clip",
     "drawn",
     "gait",

@@ -39,12 +39,18 @@ class Here(NamedTuple):
         theta: Array,
         limits: LimitRule,
         bounds: Bounds,
+        mobility: Array,
         weights: Array | None = None,
     ) -> "Here":
-        """Look around from θ; without limits joints turn any way."""
+        """Look around from θ.
+
+        Locked joints turn no way; without limits the others turn any way.
+        """
         low, high = (-np.inf, np.inf) if limits is ignore else (bounds.lower, bounds.upper)
+        locked = mobility == 0
+        low, high = (np.where(locked, 0, end - theta) for end in (low, high))
         weights = effectors.alike if weights is None else weights
-        return cls(tree, effectors, frames, low - theta, high - theta, weights)
+        return cls(tree, effectors, frames, low, high, weights)
 
     def at(self, i: int) -> "Here":
         """Pose i of a batch (p, n)."""

@@ -43,7 +43,7 @@ class Step(NamedTuple):
     aim     (..., 3k)     e as the solver was given it: shortened to max_error [m]
     allowed (..., n)      wanted after the cap [rad]
     mobility (n,)         s that the step was taken with; (..., n) where it was given so
-    weights (..., k)      of the targets
+    weights (k,)          of the targets; (..., k) where they were given so
     """
 
     theta: Array
@@ -121,7 +121,7 @@ def step(
     question = _Question(*asked)
     bounds = Bounds(tree, theta, question.turn())
     if wants(solver):
-        here = Here.of(tree, effectors, frames, theta, limits, bounds, weights)
+        here = Here.of(tree, effectors, frames, theta, limits, bounds, free, weights)
         question.solver = situated(solver, here)
     wanted = question.answer(free, aim)
     if wanted.ndim <= len(batch):  # there is a cap for each of a batch

@@ -4,7 +4,7 @@ import numpy as np
 
 from ikteach.arrays import Array
 
-CUT = 1e-4  # λ² of the projection, as a share of the mean σ²
+CUT = 1e-6  # λ² of the projection, as a share of the mean σ²
 
 
 def beside(J: Array, gap: Array) -> Array:

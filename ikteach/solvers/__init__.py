@@ -12,6 +12,10 @@ As optimisers of ½‖t − s(θ)‖² they have other names, under which a stud
     bvls            Levenberg–Marquardt in a box: a quadratic programme per step (active set)
     ccd             coordinate descent, each joint exactly (in `ikteach.motion.ccd`)
 
+The last two are no part of `SOLVERS`, the four of the thesis; they are given as functions wherever
+a method can be: `solve`, `track`, `Session`, `GaitPlayer({"ccd": ccd, "bvls": bvls})`, `Race`. They
+know the limits themselves, so that no joint of theirs counts as held.
+
 Options are bound with `functools.partial`. Weights, limits, caps and clamps are not in here: they
 are the same for all methods and stand in `ikteach.motion.step`.
 """
@@ -20,6 +24,7 @@ from collections.abc import Callable
 
 from ikteach.arrays import Array
 from ikteach.names import unknown
+from ikteach.solvers.bvls import bvls
 from ikteach.solvers.cramer import adjugate, cramer, determinant, independence
 from ikteach.solvers.dls import dls, dls_following
 from ikteach.solvers.door import ask, name_of
@@ -51,6 +56,7 @@ __all__ = [
     "Solvers",
     "adjugate",
     "ask",
+    "bvls",
     "conditioning",
     "cramer",
     "determinant",

@@ -94,6 +94,13 @@ def per_pose(name: str, value: ArrayLike) -> Any:
     raise ValueError(f"{name} must be 0 or more, and finite, not {shown(value)}")
 
 
+def takes_stacks(solver: Any) -> bool:
+    """Tell whether a solver surely takes stacks (..., m, n): our own do."""
+    while isinstance(solver, partial):
+        solver = solver.func
+    return type(solver) is FunctionType and (solver in FORMULAS or hasattr(solver, "wants"))
+
+
 def ask(solver: Any, J: Array, e: Array) -> Array:
     """Ask a solver for Δθ (..., n).
 

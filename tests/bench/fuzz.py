@@ -23,8 +23,11 @@ METHODS = [
 BATCH, TICKS = 20, 10  # poses of a body, and steps that each takes
 
 
-def body(rng):
-    """A tree of 1 to 12 joints, in any unit, some with limits, and 1 to 4 effectors."""
+def body(rng, stiff=False):
+    """A tree of 1 to 12 joints, in any unit, some with limits, and 1 to 4 effectors.
+
+    With `stiff`, some joints are locked or take a part of their step.
+    """
     n, unit, joints = rng.integers(1, 13), 10.0 ** rng.integers(-6, 7), []
     for j in range(n):
         slide = bool(rng.random() < 0.2)
@@ -36,7 +39,9 @@ def body(rng):
         parent = f"j{rng.integers(0, j)}" if j and rng.random() < 0.9 else None
         offset = unit * rng.choice([0, 1, 1]) * rng.normal(size=3)
         axis = rng.choice([rng.normal(size=3), np.eye(3)[rng.integers(3)]])
-        joints.append(Joint(f"j{j}", parent, offset, axis, slide, float(lower), float(upper)))
+        share = float(rng.choice([0, 0.5, 1, 1, 1, 1])) if stiff else 1.0
+        ends = float(lower), float(upper)
+        joints.append(Joint(f"j{j}", parent, offset, axis, slide, *ends, mobility=share))
     tree = Tree.of(joints)
     ends = {
         f"e{i}": (f"j{rng.integers(n)}", unit * rng.normal(size=3))

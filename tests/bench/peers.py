@@ -5,9 +5,10 @@
 Every peer gets the same bodies, starts, targets and tolerance, in turns of a few problems, in one
 process on one BLAS thread; process time is counted. Each is called through its documented
 interface, with targets that are positions only; the poses that it gives are judged by our forward
-kinematics. Two hand-written loops around compiled Jacobians (pinocchio, MuJoCo) show what compiled
-code leaves to be gained. A peer that is not installed is skipped by name: the extra `peers` has
-them all.
+kinematics. Who stops by itself (ikpy, tinyik) stops where its own defaults say, as nothing in its
+interface says how near is enough. Two hand-written loops around compiled Jacobians (pinocchio,
+MuJoCo), with the damping that ours has, show what compiled code leaves to be gained. A peer that is
+not installed is skipped by name: the extra `peers` has them all.
 """
 
 import os
@@ -34,7 +35,7 @@ from ikteach.body.tree import GROUND
 
 MOST = 200  # iterations, for those whose iterations can be bounded
 BLOCK = 10  # problems, after which the next peer has its turn
-DAMPING = 0.1  # of the hand-written loops [m/rad]
+SEARCHES = 7  # of roboticstoolbox, each of its default of 30 iterations
 
 
 class Case(NamedTuple):
@@ -86,6 +87,13 @@ def ours(c):
     return one
 
 
+def damped_step(J, e):
+    """The step of `dls_following`, as short as numpy has it, for the loops by hand."""
+    A = J @ J.T
+    A.flat[:: len(A) + 1] += 0.25 * (e @ e) + 1.6e-7 * np.vdot(J, J)
+    return J.T @ np.linalg.solve(A, e)
+
+
 def pinocchio_model(c):
     """The body as a model of pinocchio, its effectors as frames."""
     import pinocchio as pin
@@ -114,7 +122,6 @@ def pinocchio_loop(c):
     data = model.createData()
     frames = [model.getFrameId(f"at {name}") for name in c.effectors.names]
     m = 3 * len(frames)
-    damped = DAMPING**2 * np.eye(m)
     around = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
     lower, upper = c.tree.lower, c.tree.upper
 
@@ -128,7 +135,7 @@ def pinocchio_loop(c):
                 return q, n
             for i, f in enumerate(frames):
                 J[3 * i : 3 * i + 3] = pin.getFrameJacobian(model, data, f, around)[:3]
-            q = q + J.T @ np.linalg.solve(J @ J.T + damped, e.ravel())
+            q = q + damped_step(J, e.ravel())
             q = np.minimum(np.maximum(q, lower), upper)
 
     return one
@@ -140,14 +147,15 @@ def pink_loop(c):
 
     model = pinocchio_model(c)
     limits = [pink.limits.ConfigurationLimit(model)]
-    data = model.createData()
     tasks = [
         pink.FrameTask(f"at {name}", position_cost=1.0, orientation_cost=0.0, lm_damping=1.0)
         for name in c.effectors.names
     ]
 
+    configuration = pink.Configuration(model, model.createData(), c.starts[0])
+
     def one(start, targets):
-        configuration = pink.Configuration(model, data, start)
+        configuration.update(start)
         for task, target in zip(tasks, targets, strict=True):
             place = configuration.get_transform_frame_to_world(task.frame).copy()
             place.translation = target
@@ -212,7 +220,6 @@ def mujoco_loop(c):
     data = mujoco.MjData(model)
     sites = [model.site(name).id for name in c.effectors.names]
     m = 3 * len(sites)
-    damped = DAMPING**2 * np.eye(m)
     lower, upper = model.jnt_range.T
 
     def one(start, targets):
@@ -227,7 +234,7 @@ def mujoco_loop(c):
                 return q[order], n
             for i, site in enumerate(sites):
                 mujoco.mj_jacSite(model, data, J[3 * i : 3 * i + 3], None, site)
-            q = q + J.T @ np.linalg.solve(J @ J.T + damped, e.ravel())
+            q = q + damped_step(J, e.ravel())
             q = np.minimum(np.maximum(q, lower), upper)
 
     return one
@@ -334,7 +341,7 @@ def roboticstoolbox_python(c):
 
     ets = roboticstoolbox_ets(c)
     solver = rtb.IK_LM(
-        tol=0.5 * c.within**2, mask=[1, 1, 1, 0, 0, 0], joint_limits=True, ilimit=30, slimit=10
+        tol=0.5 * c.within**2, mask=[1, 1, 1, 0, 0, 0], joint_limits=True, slimit=SEARCHES
     )
 
     def one(start, targets):
@@ -353,7 +360,7 @@ def roboticstoolbox_compiled(c):
     def one(start, targets):
         found = ets.ik_LM(
             _moved(targets[0]), q0=start, tol=0.5 * c.within**2, mask=[1, 1, 1, 0, 0, 0],
-            joint_limits=True, ilimit=30, slimit=10,
+            joint_limits=True, slimit=SEARCHES,
         )  # fmt: skip
         return found.q, found.iterations
 
@@ -376,6 +383,8 @@ def pybullet_solver(c):
     moving = [name for name in names if name in c.tree.names]
     order = np.array([moving.index(name) for name in c.tree.names])
     ends = [names.index(f"to {name}") for name in c.effectors.names]
+    of_moving = np.array([c.tree.index(name) for name in moving])
+    places = [names.index(name) for name in c.tree.names]
     limits = {
         "lowerLimits": [c.tree.lower[c.tree.index(name)] for name in moving],
         "upperLimits": [c.tree.upper[c.tree.index(name)] for name in moving],
@@ -384,14 +393,14 @@ def pybullet_solver(c):
     }  # fmt: skip
 
     def one(start, targets):
-        for name, angle in zip(c.tree.names, start, strict=True):
-            pybullet.resetJointState(body, names.index(name), angle)
+        for place, angle in zip(places, start, strict=True):
+            pybullet.resetJointState(body, place, angle)
         if len(ends) > 1:
             q = pybullet.calculateInverseKinematics2(
                 body, ends, targets.tolist(), maxNumIterations=MOST, residualThreshold=c.within
             )
         else:
-            rest = {"restPoses": [start[c.tree.index(name)] for name in moving]}
+            rest = {"restPoses": start[of_moving].tolist()}
             q = pybullet.calculateInverseKinematics(
                 body, ends[0], targets[0].tolist(), maxNumIterations=MOST,
                 residualThreshold=c.within, **limits, **rest,

@@ -4,6 +4,7 @@ import xml.etree.ElementTree as ET
 
 import damping
 import fuzz
+import fuzz_solve
 import motion
 import numpy as np
 import peers
@@ -11,7 +12,7 @@ import reach
 import speed
 from numpy.testing import assert_allclose
 
-from ikteach import figures, forward, locate, step
+from ikteach import figures, forward, locate, solve, step
 from ikteach.motion import hold
 from ikteach.motion.reach.ways import WAYS
 
@@ -78,6 +79,34 @@ def test_a_broken_promise_is_seen():
     assert {"back"} <= fuzz.violations(tree, out, stays, **told).keys()
     further = done._replace(theta=out + 0.01, dtheta=0 * out + 0.01)
     assert {"further out"} <= fuzz.violations(tree, out, further, **told).keys()
+
+
+def test_no_promise_of_solve_is_broken(capsys):
+    assert fuzz_solve.main(solves=600, seed=1) == 0
+    assert "violations 0" in capsys.readouterr().out
+
+
+def test_a_broken_promise_of_solve_is_seen():
+    tree, effectors = figures.human()
+    theta = np.stack([(tree.lower + tree.upper) / 2] * 2)
+    targets = locate(forward(tree, theta), effectors) + 0.3
+    told = {"tolerance": 1e-3, "limits": hold, "most": 5, "restarts": 0, "weights": None}
+    done = solve(tree, effectors, targets, theta=theta, most=5)
+
+    def broken(**spoilt):
+        found = done._replace(**spoilt)
+        return fuzz_solve.violations(tree, effectors, theta, targets, found, 1.0, **told).keys()
+
+    assert not broken()
+    assert "finite" in broken(theta=done.theta * np.nan)
+    assert "within" in broken(theta=done.theta + 9)
+    assert {"converged", "converged, by forward"} <= broken(why=0 * done.why)
+    assert "error" in broken(error=done.error / 2)
+    assert "iterations" in broken(iterations=done.iterations + 9)
+    start = locate(forward(tree, theta), effectors)
+    lazy = {"theta": theta, "error": np.linalg.norm(targets - start, axis=-1)}
+    assert broken(**lazy, why=0 * done.why + 1) == {"stands still"}
+    assert "at limits" in broken(**lazy, why=0 * done.why + 2)
 
 
 def test_peers_judges_and_prints_what_is_here(capsys, monkeypatch):

@@ -6,8 +6,21 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strategies import anybody, poses
 
-from ikteach import Effectors, Joint, Tree, figures, forward, jacobian, locate
-from ikteach.motion.ccd import ccd
+from ikteach import (
+    Effectors,
+    Joint,
+    Tree,
+    bvls,
+    ccd,
+    figures,
+    forward,
+    gait,
+    jacobian,
+    locate,
+    step,
+    track,
+)
+from ikteach.motion import Session
 
 
 def sweep(tree, effectors, theta, targets, low=None, high=None):
@@ -62,3 +75,27 @@ def test_sweeps_never_make_it_worse_and_stay_within_limits(figure, seed):
         theta = theta + sweep(tree, effectors, theta, targets)
         assert (theta >= tree.lower - 1e-12).all()
         assert (theta <= tree.upper + 1e-12).all()
+
+
+@pytest.mark.parametrize("method", [ccd, bvls], ids=lambda method: method.__name__)
+def test_a_foil_goes_wherever_a_method_goes(method):
+    tree, effectors = figures.human()
+    targets = gait.walking(gait.walking.clock(20))
+    followed = track(tree, effectors, targets, method)
+    assert ((followed.theta >= tree.lower) & (followed.theta <= tree.upper)).all()
+    session = Session(methods={"foil": method, "dls": "dls"})
+    for _ in range(20):
+        session.tick()
+    session.show("foil")
+    still = np.linalg.norm(session.targets - locate(forward(tree, tree.rest), effectors), axis=-1)
+    assert session.error.mean() < still.mean()
+
+
+def test_a_locked_joint_is_known_to_a_foil():
+    """The others do what it would have done."""
+    tree = Tree.of([Joint("a"), Joint("b", "a", (1, 0, 0), mobility=0)])
+    effectors = Effectors.of(tree, {"hand": ("b", (1, 0, 0))})
+    done = step(tree, [0.0, 0.5], effectors, [[0.0, 3.0, 0.0]], ccd)
+    hand = locate(forward(tree, done.theta), effectors)[0]
+    assert done.theta[1] == 0.5
+    assert hand[0] == pytest.approx(0, abs=1e-12)

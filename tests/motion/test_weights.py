@@ -16,6 +16,7 @@ from ikteach import (
     forward,
     jacobian,
     locate,
+    solve,
     step,
     track,
 )
@@ -103,7 +104,7 @@ def test_a_wish_moves_no_effector_to_first_order(figure, seed):
     gap = rng.normal(size=len(tree))
     turn = beside(J, gap)
     norm = np.linalg.norm(J)
-    assert np.linalg.norm(J @ turn) <= 0.01 * norm * np.linalg.norm(gap)  # λ, where σ is below it
+    assert np.linalg.norm(J @ turn) <= 1e-3 * norm * np.linalg.norm(gap)  # λ, where σ is below it
     assert turn @ turn <= gap @ gap * (1 + 1e-9)
     assert_allclose(beside(J, turn), turn, atol=0.3 * np.linalg.norm(gap))
 
@@ -193,3 +194,30 @@ def test_what_is_wrong_is_named(options, words):
     tree, effectors = figures.human()
     with pytest.raises(ValueError, match=words):
         step(tree, tree.rest, effectors, np.zeros((4, 3)), "dls", **options)
+
+
+def test_solve_goes_by_the_way_of_a_wish():
+    """An arm with a joint to spare meets its target in the pose that is nearest to the wish."""
+    tree, effectors = figures.planar_arm(4)
+    target = [[2.0, 1.0, 0.0]]
+    found = {
+        turn: solve(tree, effectors, target, theta=[0.1] * 4, wish=[turn] * 4)
+        for turn in (0.8, -0.8)
+    }
+    assert all(one.converged for one in found.values())
+    for turn, other in (0.8, -0.8), (-0.8, 0.8):
+        near, far = (np.linalg.norm(found[one].theta - turn) for one in (turn, other))
+        assert near < far
+    with pytest.raises(ValueError, match="one pose is wished for"):
+        solve(tree, effectors, target, wish=np.zeros((2, 4)))
+    with pytest.raises(ValueError, match="the wish is no pose"):
+        solve(tree, effectors, target, wish=[0, 0])
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_solve_gives_weights_to_every_method(method):
+    """Also to one that looks at the body itself, beyond J and e."""
+    tree = Tree.of([Joint("rail", axis=(1, 0, 0), slide=True)])
+    both = Effectors.of(tree, {"a": ("rail", (0, 0, 0)), "b": ("rail", (0, 0, 0))})
+    found = solve(tree, both, [[0, 0, 0], [1, 0, 0]], method, weights=[1, 2])
+    assert found.theta[0] == pytest.approx(0.8, abs=0.02)
