@@ -71,13 +71,13 @@ def mobility_of(tree: Tree, mobility: ArrayLike) -> Array:
     return s
 
 
-def weights_of(effectors: Effectors, weights: ArrayLike | None) -> Array:
+def weights_of(effectors: Effectors, weights: ArrayLike | None) -> Array | None:
     """Make an array of weights (..., k), each 0 or more.
 
-    None is all 1.
+    None stays None.
     """
     if weights is None:
-        return effectors.alike
+        return None
     array, k = numbers("weights", weights), len(effectors)
     if array.shape[-1:] != (k,) or not finite(array) or (array < 0).any():
         needs = f"weights need a number from 0 up for each effector, (..., {k})"
@@ -128,15 +128,15 @@ def batch_of(
     free: Array,
     max_step: Array | None,
     max_error: Array | None,
-    weights: Array,
+    weights: Array | None = None,
     wish: Array | None = None,
 ) -> tuple[int, ...]:
     """Return the batch of all that is given.
 
     ValueError if its parts do not fit together.
     """
-    plain = max_step is max_error is wish is None
-    if plain and theta.ndim == free.ndim == targets.ndim - 1 == weights.ndim == 1:
+    plain = max_step is None and max_error is None and weights is None and wish is None
+    if plain and theta.ndim == free.ndim == targets.ndim - 1 == 1:
         return ()  # one pose, the common case
     batches = [theta.shape[:-1], targets.shape[:-2], free.shape[:-1]]
     if max_step is not None:

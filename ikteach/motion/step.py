@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ikteach.arrays import Array, ArrayLike, Mask
+from ikteach.arrays import Array, ArrayLike, Index, Mask
 from ikteach.body import Effectors, Frames, Tree, jacobian, locate
 from ikteach.checks import function, numbers
 from ikteach.motion.checks import (
@@ -117,7 +117,7 @@ def step(
     for array in (J, e, aim):  # no solver may change them
         array.setflags(write=False)
     all_free = free is tree.mobility and tree.free
-    asked = (solver, theta, J, aim, free, all_free, max_step, cap, effectors, weights, wish)
+    asked = (solver, theta, J, aim, free, all_free, max_step, cap, effectors.chains, weights, wish)
     question = _Question(*asked)
     bounds = Bounds(tree, theta, question.turn())
     if wants(solver):
@@ -132,8 +132,8 @@ def step(
     if max_step is not None and np.count_nonzero(held):
         beyond = (to < tree.lower) | (to > tree.upper)  # it would be back but for the cap
         capped = capped | (beyond & held & (free != 0)).any(axis=-1)
-    capped = np.asarray(capped)
-    return Step(to, e, J, wanted, to - theta, capped, held, aim, allowed, free, weights)
+    capped, each = np.asarray(capped), effectors.alike if weights is None else weights
+    return Step(to, e, J, wanted, to - theta, capped, held, aim, allowed, free, each)
 
 
 @dataclass
@@ -148,18 +148,18 @@ class _Question:
     all_free: bool
     max_step: Array | None
     cap: Cap
-    effectors: Effectors
-    weights: Array
+    chains: Index
+    weights: Array | None
     wish: Array | None
     capped: Mask | None = None  # where the cap shortened the last answer
 
     def answer(self, s: Array, e: Array) -> Array:
         """Ask how joints with mobility s would take e away: s ∘ solver(J ∘ s, e)."""
         J = self.J
-        if self.weights is not self.effectors.alike:
+        as_it_is = s is self.free and self.all_free
+        if self.weights is not None:
             w = np.repeat(self.weights, 3, axis=-1)
             J, e = w[..., None] * J, w * e
-        as_it_is = self.all_free and s is self.free
         if not as_it_is:
             J = J * s[..., None, :]
         dtheta = ask(self.solver, J, e)
@@ -171,7 +171,7 @@ class _Question:
         """Apply the cap."""
         if self.max_step is None:
             return wanted
-        dtheta = self.cap(wanted, self.max_step, self.effectors.chains)
+        dtheta = self.cap(wanted, self.max_step, self.chains)
         self.capped = (dtheta != wanted).any(axis=-1)
         return dtheta
 
