@@ -75,7 +75,7 @@ def walks():
     for speed, walk in speeds.items():
         runs = {name: perform(walk, WALKER, solver, cycles=4) for name, solver in METHODS.items()}
         runs["the norm itself"] = imitate(walk, WALKER, cycles=4, speed=speed)
-        print(f"\nnatural, {walk.speed} m/s, against the norm {speed!r} [m, degrees]")
+        print(f"\n{walk.name}, {walk.speed} m/s, against the norm {speed!r} [m, degrees]")
         print(gait_report(runs, walk, speed=speed).round(4).to_string())
     runs = {
         name: perform(gait.walking, figures.human(), solver) for name, solver in METHODS.items()

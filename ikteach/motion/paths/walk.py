@@ -228,6 +228,24 @@ class Walk(NamedMotion):
         return at
 
 
+natural = Walk()
+slow = Walk(
+    "slow",
+    speed=0.95,
+    cadence=100.0,
+    duty=0.61,
+    height=0.925,
+    reach=0.18,
+    lift=0.08,
+    strike=5.0,
+    push_off=-60.0,
+    bob=0.007,
+    tilt=9.5,
+)
+fast = Walk("fast", speed=1.5, cadence=126.0, reach=0.25)
+WALKS: Mapping[str, Walk] = {"slow": slow, "natural": natural, "fast": fast}  # as the norms are
+
+
 def wave(q: ArrayLike) -> Array:
     """Return cos 2πq."""
     return np.cos(2 * pi * np.asarray(q))
