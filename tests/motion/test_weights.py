@@ -29,11 +29,14 @@ WALKER = figures.walker().tree
 PULLED = Effectors.of(
     WALKER,
     {
-        **{f"foot.{s}{i}": (f"foot.{s}", at) for s in "lr" for i, at in
-           enumerate((figures.HEEL, figures.BALL))},
+        **{
+            f"foot.{s}{i}": (f"foot.{s}", at)
+            for s in "lr"
+            for i, at in enumerate((figures.HEEL, figures.BALL))
+        },
         "hand.r": ("elbow.r", figures.HAND),
     },
-)  # fmt: skip
+)
 FAR = [-0.23, 1.6, 0.2]  # where the hand cannot come, with the feet on the floor [m]
 CAREFUL = {"max_error": 0.05, "max_step": 0.1}
 

@@ -23,9 +23,18 @@ def posed(theta, times):
     T, k = len(theta), len(EFFECTORS)
     zero = np.zeros((T, k))
     return Track(
-        "mine", TREE, EFFECTORS, times, np.zeros((T, k, 3)), theta[0], theta, zero, zero[:, 0],
-        np.zeros(theta.shape, dtype=bool), 0.0,
-    )  # fmt: skip
+        "mine",
+        TREE,
+        EFFECTORS,
+        times,
+        np.zeros((T, k, 3)),
+        theta[0],
+        theta,
+        zero,
+        zero[:, 0],
+        np.zeros(theta.shape, dtype=bool),
+        0.0,
+    )
 
 
 def norm_itself(off=0.0, frames=300):
