@@ -29,8 +29,23 @@ SIGNS = [
     "-->",
     "]]>",
 ]
-WORDS = """1e999|nan|OFFSET|JOINT x|End Site|MOTION|CHANNELS 6|Frames: 5|<joint|</link>|<!--|&lt;|
-type="fixed"|0 0 0|99999999999999999999""".split("|")
+WORDS = [
+    "1e999",
+    "nan",
+    "OFFSET",
+    "JOINT x",
+    "End Site",
+    "MOTION",
+    "CHANNELS 6",
+    "Frames: 5",
+    "<joint",
+    "</link>",
+    "<!--",
+    "&lt;",
+    '\ntype="fixed"',
+    "0 0 0",
+    "99999999999999999999",
+]
 SPLINTERS = st.sampled_from(SIGNS + WORDS)
 
 
