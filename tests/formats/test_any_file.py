@@ -17,36 +17,20 @@ from ikteach.motion.live.session import Session
 from ikteach.motion.track import track
 
 URDF = (Path(__file__).parents[1] / "data" / "arm7.urdf").read_text(encoding="utf-8")
-SIGNS = [
-    *"{}<>/&;#\"'=-.0 \n\r\t",
-    "\x00",
-    "\u2028",
-    "\ud800",
-    "\ufeff",
-    "é",
-    "²",
-    "_",
-    "-->",
-    "]]>",
-]
-WORDS = [
-    "1e999",
-    "nan",
+SIGNS = [*"{}<>/&;#\"'=-.0 \n\r\t", "\x00", "\u2028", "\ud800", "\ufeff", "é", "²", "_"]
+KEYS = [
     "OFFSET",
     "JOINT x",
     "End Site",
     "MOTION",
     "CHANNELS 6",
     "Frames: 5",
-    "<joint",
-    "</link>",
-    "<!--",
-    "&lt;",
-    '\ntype="fixed"',
     "0 0 0",
-    "99999999999999999999",
+    "1e999",
+    "nan",
 ]
-SPLINTERS = st.sampled_from(SIGNS + WORDS)
+TAGS = ["<joint", "</link>", "<!--", "-->", "]]>", 'type="fixed"', "&lt;", "99999999999999999999"]
+SPLINTERS = st.sampled_from(SIGNS + KEYS + TAGS)
 
 
 def broken(draw, text, most=6):
