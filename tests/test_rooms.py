@@ -21,6 +21,7 @@ FLOORS = [  # from the ground up; rooms of one floor do not know each other
     TOOLS,
     {"body", "solvers"},
     {"motion"},
+    {"motion.paths"},
     {"motion.live", "motion.reach"},
     {"formats", "study"},
     {"view.stage", "view.widgets"},
@@ -45,7 +46,7 @@ MOST = 15  # modules in one folder
 SCREEN = {"matplotlib", "ipywidgets", "pythreejs", "anywidget", "traitlets", "IPython"}
 HEAVY = ["pandas", "matplotlib", "ipywidgets", "pythreejs", "anywidget", "traitlets"]
 OTHERS = {  # what a room may import from elsewhere, beside numpy and the standard library
-    "formats": {"av"},
+    "formats": {"av", "pygltflib"},
     "study": {"pandas"},
     "view": SCREEN | {"pandas", "PIL"},
     "course": SCREEN | {"pandas"},

@@ -101,6 +101,11 @@ SAME = [
     (solvers.manipulability, "(...)", lambda g: solvers.manipulability(g.J)),
     (solvers.conditioning, "(...)", lambda g: solvers.conditioning(g.J)),
     (solvers.dls_following, "(..., n)", lambda g: solvers.dls_following(g.J, g.e)),
+    (
+        solvers.bvls,
+        "(..., n)",
+        lambda g: solvers.bvls(g.J, g.e, low=-abs(g.theta), high=1 + g.theta**2),
+    ),
 ]
 RECORDS = [  # a record, its promises by field, how to make one
     (Frames, lambda g: g.frames),

@@ -50,8 +50,9 @@ def _swept(tree: Tree, effectors: Effectors, lower: Array, upper: Array) -> tupl
     endless = np.isinf(tree.lower) | np.isinf(tree.upper)
     middle = (lower + upper) / 2
     half = np.where(endless & ~tree.slide, np.pi, (upper - lower) / 2)
-    carrier = np.concatenate([np.arange(n), effectors.joints])
-    c, r = np.concatenate([np.zeros((n, 3)), effectors.offsets]), np.zeros(len(carrier))
+    points = effectors.w == 1
+    carrier = np.concatenate([np.arange(n), effectors.joints[points]])
+    c, r = np.concatenate([np.zeros((n, 3)), effectors.offsets[points]]), np.zeros(len(carrier))
     far = np.linalg.norm(c, axis=-1)  # from the origin of the frame, at most
     for j in reversed(range(n)):  # children before parents
         on, axis = carrier == j, tree.axes[j]

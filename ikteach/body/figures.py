@@ -1,7 +1,8 @@
-"""The figures of the course: a planar arm, Buss's Y and double Y, a human of 20 joints,
-and the figure of CS 490 with 16 degrees of motion."""
+"""The figures of the course: a planar arm, Buss's Y and double Y, a human of 20 joints, the figure
+of CS 490 with 16 degrees of motion, and a walker whose pelvis is free."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import inf, radians, sqrt
 from typing import NamedTuple
 
@@ -118,10 +119,107 @@ def human() -> Figure:
     return Figure(tree, _feet_and_hands(tree))
 
 
+HEEL, BALL = (0, -0.0702, -0.0684), (0, -0.0702, 0.1286)  # in the frame of a human's ankle [m]
+HAND = (0, -0.3612, 0)  # from the elbow [m]
+TOE = (0, 0, 0.0767)  # its tip, from the ball of the foot [m]
+GAZE = 0.3  # length of the pelvis's directions: 1° off weighs as much as 5 mm [m]
+
+
+def ball(
+    name: str,
+    parent: str | None = None,
+    offset: Vector = (0.0, 0.0, 0.0),
+    *,
+    order: str = "YXZ",
+    lower: float | Vector = -inf,
+    upper: float | Vector = inf,
+) -> list[Joint]:
+    """Make a ball joint: hinges about two or three axes.
+
+    order         letters of X, Y and Z, that of the ground's side first: R = R_y R_x R_z for "YXZ".
+                  Where the middle one stands at 90° the outer ones turn alike: the joint locks
+    lower, upper  limits of all, or of each [rad]
+
+    The rows are called "<name>.x" and so on, at one place. ValueError for other letters.
+    """
+    axes = {"X": X, "Y": Y, "Z": Z}
+    if not isinstance(order, str) or not (0 < len(order) == len(set(order) & set(axes))):
+        raise ValueError(f"the order of a ball has X, Y, Z, each once, not {shown(order)}")
+    lows, highs = (_each(end, value, order) for end, value in (("lower", lower), ("upper", upper)))
+    rows: list[Joint] = []
+    for letter, low, high in zip(order, lows, highs, strict=True):
+        above, place = (rows[-1].name, (0.0, 0.0, 0.0)) if rows else (parent, offset)
+        row = f"{name}.{letter.lower()}"
+        rows.append(Joint(row, above, place, axes[letter], lower=low, upper=high))
+    return rows
+
+
+def _each(name: str, values: float | Vector, order: str) -> list[float]:
+    """Give a limit of each hinge, from that of all."""
+    array = numbers(name, values)
+    if array.shape not in ((), (len(order),)):
+        raise ValueError(f"{name} of a ball is one number, or {len(order)}, not {shown(values)}")
+    return np.broadcast_to(array, len(order)).tolist()
+
+
+def floating(figure: Figure, *, name: str = "root", order: str = "YXZ") -> Figure:
+    """Put six rows below all that hangs from the ground.
+
+    Three slides "<name>.x.slide" and so on, then the ball "<name>.y", "<name>.x", "<name>.z", all
+    without limits and at the origin. The effectors stay what they are.
+    """
+    root: list[Joint] = []
+    for letter, axis in zip("xyz", (X, Y, Z), strict=True):
+        above = root[-1].name if root else None
+        root.append(Joint(f"{name}.{letter}.slide", above, axis=axis, slide=True))
+    root += ball(name, root[-1].name, order=order)
+    top = root[-1].name
+    rows = [replace(j, parent=top) if j.parent is None else j for j in figure.tree.joints()]
+    tree = Tree.of([*root, *rows])
+    return Figure(tree, _effectors_on(tree, figure))
+
+
+def walker() -> Figure:
+    """Make a human with a free pelvis and bending toes, 30 rows.
+
+    The human's 20 hinges; six rows of the pelvis (`floating`); in each foot one that tilts it
+    sideways and one at its ball that bends the toes. Hips, knees and elbows are bent at rest: a
+    straight knee is singular, and at its limit. The effectors are what a walk has targets for
+    (`ikteach.motion.paths.walk`): the pelvis, the heels and balls of the feet, and which way the
+    pelvis points up and ahead. Trunk, arms and toes follow a wish.
+    """
+    tree = floating(human(), name="pelvis").tree
+    bent = {"hip.bend": 15, "knee": 20, "elbow": 20}
+    rows = [replace(row, rest=radians(bent.get(row.name[:-2], 0))) for row in tree.joints()]
+    points: dict[str, tuple[str, Vector]] = {"pelvis": ("pelvis.z", (0, 0, 0))}
+    for side, x in ("l", 1), ("r", -1):
+        foot, toes = f"foot.{side}", f"toes.{side}"
+        rows.append(_hinge(foot, f"ankle.{side}", (0, 0, 0), (0, 0, x), -20, 35))
+        rows.append(_hinge(toes, foot, BALL, (-1, 0, 0), -30, 70))
+        points |= {f"heel.{side}": (foot, HEEL), f"ball.{side}": (foot, BALL)}
+    tree = Tree.of(rows)
+    up, ahead = ("pelvis.z", (0, GAZE, 0)), ("pelvis.z", (0, 0, GAZE))
+    directions = {"pelvis.up": up, "pelvis.ahead": ahead}
+    return Figure(tree, Effectors.of(tree, points, directions=directions))
+
+
+def _effectors_on(tree: Tree, figure: Figure) -> Effectors:
+    """Make a figure's effectors anew, on a tree that has its joints too."""
+    names, old = figure.tree.names, figure.effectors
+    each = {
+        name: (names[joint], offset)
+        for name, joint, offset in zip(
+            old.names, old.joints.tolist(), old.offsets.tolist(), strict=True
+        )
+    }
+    points = {name: each[name] for name, w in zip(old.names, old.w, strict=True) if w}
+    directions = {name: at for name, at in each.items() if name not in points}
+    return Effectors.of(tree, points, directions=directions)
+
+
 def heels(tree: Tree) -> Effectors:
     """Return the heels of `human().tree`, for footprints: they reach for nothing."""
-    heel = (0, -0.0702, -0.0684)
-    return Effectors.of(tree, {f"heel.{side}": (f"ankle.{side}", heel) for side in "lr"})
+    return Effectors.of(tree, {f"heel.{side}": (f"ankle.{side}", HEEL) for side in "lr"})
 
 
 # Rows that one angle turns. The tree keeps a row each, so that `forward` and `jacobian` need not
@@ -242,12 +340,11 @@ def _leg(side: str, x: int) -> list[Joint]:
 
 def _feet_and_hands(tree: Tree) -> Effectors:
     """Find the balls of the feet and the hands, in the order of the thesis."""
-    ball, hand = (0, -0.0702, 0.1286), (0, -0.3612, 0)
     points = {
-        "foot.l": ("ankle.l", ball),
-        "foot.r": ("ankle.r", ball),
-        "hand.r": ("elbow.r", hand),
-        "hand.l": ("elbow.l", hand),
+        "foot.l": ("ankle.l", BALL),
+        "foot.r": ("ankle.r", BALL),
+        "hand.r": ("elbow.r", HAND),
+        "hand.l": ("elbow.l", HAND),
     }
     return Effectors.of(tree, points)
 

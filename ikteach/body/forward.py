@@ -47,9 +47,14 @@ def forward(tree: Tree, theta: ArrayLike) -> Frames:
 
 
 def locate(frames: Frames, effectors: Effectors) -> Array:
-    """Return the positions s_i = p_j + R_j offset_i of the effectors, (..., k, 3) [m]."""
+    """Return s_i = w_i p_j + R_j offset_i of the effectors, (..., k, 3) [m].
+
+    It is where a point is (w = 1), or how a direction points (w = 0).
+    """
     check_frames(effectors, frames)
     p = frames.positions.take(effectors.joints, axis=-2)
+    if effectors.directed:
+        p = effectors.w[:, None] * p
     R = frames.orientations.take(effectors.joints, axis=-3)
     return p + np.matvec(R, effectors.offsets)
 

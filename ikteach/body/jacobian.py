@@ -14,9 +14,10 @@ def jacobian(
 ) -> Array:
     """Return J (..., 3k, n) [m/rad; 1 for slides]: row 3i + c is coordinate c of effector i.
 
-    The column of a hinge j that carries effector i is v_j × (s_i − p_j), of a slide v_j, and zero
-    where j does not carry i. `at` (..., k, 3) [m] puts other points in place of the s_i: with the
-    targets there it is the second form of thesis section 3.2, v_j × (t_i − p_j).
+    The column of a hinge j that carries effector i is v_j × (s_i − w_i p_j), of a slide w_i v_j,
+    and zero where j does not carry i; w_i is 1 for a point and 0 for a direction. `at` (..., k, 3)
+    [m] puts other points in place of the s_i: with the targets there it is the second form of
+    thesis section 3.2, v_j × (t_i − p_j).
     ValueError if shapes do not fit.
     """
     s = locate(frames, effectors) if at is None else _points(frames, effectors, at)
@@ -24,6 +25,8 @@ def jacobian(
     if n != len(tree.names):
         raise ValueError(f"these frames are of {n} joints, not of {len(tree)}")
     s, p, v = down_effectors(s), across_joints(frames.positions), across_joints(frames.axes)
+    if effectors.directed:
+        p = effectors.w[:, None, None] * p
     columns = cross(v, s - p)  # (..., k, 3, n)
     if tree.plan.slides:
         columns = np.where(tree.slide, frames.axes.mT[..., None, :, :], columns)

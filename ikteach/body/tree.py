@@ -119,6 +119,16 @@ class Tree:
     def __len__(self) -> int:
         return len(self.names)
 
+    def joints(self) -> list[Joint]:
+        """Return the rows that this tree can be made of."""
+        names = {GROUND: None, **dict(enumerate(self.names))}
+        columns = (self.offsets, self.axes, self.slide, self.lower, self.upper, self.rest)
+        each = zip(*(column.tolist() for column in (*columns, self.mobility)), strict=True)
+        return [
+            Joint(name, names[parent], *others)
+            for name, parent, others in zip(self.names, self.parents.tolist(), each, strict=True)
+        ]
+
     def index(self, name: str) -> int:
         """Return the row of the joint called `name`; LookupError suggests another."""
         try:
@@ -149,13 +159,14 @@ class Tree:
 
 @dataclass(frozen=True, eq=False)
 class Effectors:
-    """The k points of a body that reach for targets.
+    """The k points and directions of a body that reach for targets.
 
-    Each is fixed to some joint.
+    Each is fixed to some joint, as a homogeneous point o with its w: s = w p + R o.
 
     names             k names
     joints   (k,)     the joint that carries each of them
-    offsets  (k, 3)   where the point is in that joint's frame [m]
+    offsets  (k, 3)   o: where a point is in that joint's frame, or a direction there [m]
+    w        (k,)     1 for a point, 0 for a direction: it is turned with the joint, and not moved
     carried  (k, n)   True where joint j moves effector i
     chains   (n,)     a number per joint; joints that share an effector, directly or through others,
                       have the same one, and -1 stands where a joint moves no effector
@@ -164,36 +175,66 @@ class Effectors:
     names: tuple[str, ...]
     joints: Index
     offsets: Array
+    w: Array
     carried: Mask
     chains: Index
 
     @classmethod
-    def of(cls, tree: Tree, points: Mapping[str, tuple[str, Sequence[float]]]) -> "Effectors":
-        """Make the effectors {name: (joint, offset)} of `tree`, on any joints."""
+    def of(
+        cls,
+        tree: Tree,
+        points: Mapping[str, tuple[str, Sequence[float]]],
+        *,
+        directions: Mapping[str, tuple[str, Sequence[float]]] | None = None,
+    ) -> "Effectors":
+        """Make the effectors {name: (joint, offset)} of `tree`, on any joints.
+
+        directions  {name: (joint, vector)}, which come after the points. Its target is a vector of
+                    the same length; a direction that is off by φ has the error 2ℓ sin(φ/2), so that
+                    its length ℓ [m] is its weight beside the points. Two make an orientation
+
+        TypeError, ValueError or LookupError names the effector that is wrong.
+        """
         if not isinstance(tree, Tree):
             raise TypeError(f"a Tree is needed here, not {shown(tree)}")
-        if not isinstance(points, Mapping):
-            raise TypeError(f"effectors are {{name: (joint, offset)}}, not {shown(points)}")
-        if not points:
+        for kind in (points, {} if directions is None else directions):
+            if not isinstance(kind, Mapping):
+                raise TypeError(f"effectors are {{name: (joint, offset)}}, not {shown(kind)}")
+        each = [*points.items(), *(directions or {}).items()]
+        if not each:
             raise ValueError("at least one effector is needed")
-        for name, point in points.items():
-            who = shown(name)
-            if not isinstance(name, str) or not name:
-                raise ValueError(f"an effector needs a name, not {who}")
-            if not isinstance(point, Sequence) or isinstance(point, str) or len(point) != 2:
-                raise ValueError(f"effector {who} needs (joint, offset), not {shown(point)}")
-            _check_vector(f"the offset of effector {who}", point[1])
-        joints = [tree.index(joint) for joint, _ in points.values()]
-        carried = np.zeros((len(points), len(tree)), dtype=bool)
+        for name, point in each:
+            _check_point(name, point)
+        for name, (_, vector) in (directions or {}).items():
+            if not np.any(vector):
+                raise ValueError(f"the direction {shown(name)} is zero; its length is its weight")
+            if name in points:
+                raise ValueError(f"there are two effectors called {shown(name)}")
+        joints = [tree.index(joint) for _, (joint, _) in each]
+        carried = np.zeros((len(each), len(tree)), dtype=bool)
         for row, joint in zip(carried, joints, strict=True):
             row[tree.above(joint)] = True
+        w = np.arange(len(each)) < len(points)
+        # A slide does not move a direction.
+        carried &= ~tree.slide | w[:, None]
         return cls(
-            names=tuple(points),
+            names=tuple(name for name, _ in each),
             joints=frozen(joints, np.intp),
-            offsets=frozen([offset for _, offset in points.values()]),
+            offsets=frozen([offset for _, (_, offset) in each]),
+            w=frozen(w),
             carried=frozen(carried, bool),
             chains=frozen(_chains(carried), np.intp),
         )
+
+    @cached_property
+    def alike(self) -> Array:
+        """Weights (k,) of effectors that all weigh 1."""
+        return frozen(np.ones(len(self)))
+
+    @cached_property
+    def directed(self) -> bool:
+        """Whether there are directions among them."""
+        return not self.w.all()
 
     @cached_property
     def mask(self) -> Array:
@@ -202,6 +243,15 @@ class Effectors:
 
     def __len__(self) -> int:
         return len(self.names)
+
+
+def _check_point(name: object, point: object) -> None:
+    who = shown(name)
+    if not isinstance(name, str) or not name:
+        raise ValueError(f"an effector needs a name, not {who}")
+    if not isinstance(point, Sequence) or isinstance(point, str) or len(point) != 2:
+        raise ValueError(f"effector {who} needs (joint, offset), not {shown(point)}")
+    _check_vector(f"the offset of effector {who}", point[1])
 
 
 def _chains(carried: Mask) -> list[int]:

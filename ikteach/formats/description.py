@@ -38,14 +38,17 @@ def describe(log: Log) -> dict[str, Any]:
         "events": [jsonable(in_words(event._asdict())) for event in log.events],
         "figure": {
             "joints": list(_joints(log.tree)),
-            "effectors": {
-                name: [log.tree.names[joint], offset.tolist()]
-                for name, joint, offset in zip(
-                    log.effectors.names, log.effectors.joints, log.effectors.offsets, strict=True
-                )
-            },
+            "effectors": _ends(log, 1),
+            "directions": _ends(log, 0),
         },
     }
+
+
+def _ends(log: Log, w: int) -> dict[str, list[Any]]:
+    """Write the effectors that are points (w = 1), or directions (w = 0)."""
+    ends = log.effectors
+    each = zip(ends.names, ends.joints.tolist(), ends.offsets.tolist(), ends.w, strict=True)
+    return {name: [log.tree.names[joint], at] for name, joint, at, one in each if one == w}
 
 
 def _joints(tree: Tree) -> Iterator[dict[str, Any]]:
@@ -173,10 +176,12 @@ def _figure(given: dict[str, Any]) -> tuple[Tree, Effectors]:
     of = " of the figure"
     rows = [_joint(one) for one in field(given, "joints", list, of)]
     points = field(given, "effectors", dict, of)
+    given = {"directions": {}} | given  # which files of the first version do not have
+    directions = field(given, "directions", dict, of)
     names("joint", [row.name for row in rows])
-    names("effector", list(points))
+    names("effector", [*points, *directions])
     tree = Tree.of(rows)
-    for name, point in points.items():
+    for name, point in [*points.items(), *directions.items()]:
         if len(_of_kind(point, list, f"effector {quoted(name)}")) != 2:
             raise ValueError(
                 f"effector {quoted(name)} is {quoted(point)}, not a joint and an offset"
@@ -187,4 +192,5 @@ def _figure(given: dict[str, Any]) -> tuple[Tree, Effectors]:
     axes = np.array([row.axis for row in rows])
     same = abs(axes - tree.axes).max(axis=1, keepdims=True) < 1e-9
     tree = replace(tree, axes=frozen(np.where(same, axes, tree.axes)))
-    return tree, Effectors.of(tree, {name: tuple(at) for name, at in points.items()})
+    both = ({name: tuple(at) for name, at in one.items()} for one in (points, directions))
+    return tree, Effectors.of(tree, next(both), directions=next(both))

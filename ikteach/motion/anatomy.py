@@ -2,6 +2,8 @@
 
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from ikteach.arrays import Array, ArrayLike, Mask
 from ikteach.body import Effectors, Tree, forward, locate
 from ikteach.motion.checks import solver_of
@@ -17,8 +19,8 @@ class Anatomy(NamedTuple):
     n joints, k effectors, r = min(3k, n).
 
     method     the solver's name
-    e          (3k,)      the error, shortened by max_error if there is one [m]
-    J          (3k, n)    as the solver gets it: each column times its joint's mobility [m/rad]
+    e          (3k,)      the error, shortened by max_error and weighed, as the solver gets it [m]
+    J          (3k, n)    as it gets it: each column times its joint's mobility, each row weighed
     mobility   (n,)       s, so that wanted = s ∘ Σ f_i α_i v_i
     U          (3k, r)    its singular directions, as in `solvers.response.Directions`
     sigma      (r,)       singular values [m/rad]
@@ -79,7 +81,8 @@ def anatomy(
     done = step(tree, theta, effectors, targets, solver, **options)
     if done.theta.ndim != 1:
         raise ValueError(f"one pose is taken apart at a time, not {done.theta.shape[:-1]} of them")
-    J, e = done.J * done.mobility, done.aim
+    w = np.repeat(done.weights, 3)
+    J, e = w[:, None] * done.J * done.mobility, w * done.aim
     chosen, function = methods_of(methods), solver_of(solver)
     name = next((name for name, one in chosen.items() if one is function), name_of(function))
     if chosen.get(name, function) is not function:

@@ -7,12 +7,20 @@ starts from there.
 
 import numpy as np
 
-from ikteach.arrays import Array
+from ikteach.arrays import TINY, Array
 from ikteach.body import Effectors, Frames, Tree, locate
 
 
 def ccd(
-    J: Array, e: Array, *, tree: Tree, effectors: Effectors, frames: Frames, low: Array, high: Array
+    J: Array,
+    e: Array,
+    *,
+    tree: Tree,
+    effectors: Effectors,
+    frames: Frames,
+    low: Array,
+    high: Array,
+    weights: Array | None = None,
 ) -> Array:
     """Turn each joint once, from tips to ground: (..., n) [rad].
 
@@ -21,13 +29,18 @@ def ccd(
     e                      (..., 3k)  t − s [m]
     tree, effectors, frames           the body, and where its joints are
     low, high              (..., n)   how far each joint may turn down and up [rad]
-    With a = s − p and b = t − p for each effector that a hinge carries, the turn φ about its axis v
-    that brings all a nearest to b has tan φ = Σ v·(a × b) / Σ (a·b − (a·v)(b·v)). A slide moves by
-    the mean of v·(t − s).
+    weights                (..., k)   of the targets, by which e was multiplied
+    With a = s − wp and b = t − wp for each effector that a hinge carries (w is 1 for a point, 0 for
+    a direction), the turn φ about its axis v that brings all a nearest to b has
+    tan φ = Σ v·(a × b) / Σ (a·b − (a·v)(b·v)). A slide moves by the mean of v·(t − s). Weights
+    square in these sums.
     Source: Wang & Chen 1991, IEEE Trans. Robotics and Automation 7:489; thesis 4.4.
     """
     s = locate(frames, effectors)
-    t = s + e.reshape(*e.shape[:-1], len(effectors), 3)
+    weights = np.ones(len(effectors)) if weights is None else weights
+    square = np.square(weights)
+    off = e.reshape(*e.shape[:-1], len(effectors), 3)
+    t = s + np.divide(off, weights[..., None], out=np.zeros_like(off), where=weights[..., None] > 0)
     batch = np.broadcast_shapes(t.shape[:-2], low.shape[:-1])
     s = np.broadcast_to(s, (*batch, *s.shape[-2:])).copy()
     dtheta = np.zeros((*batch, len(tree)))
@@ -36,12 +49,14 @@ def ccd(
         if not ours.any():
             continue
         v, p = frames.axes[..., j, None, :], frames.positions[..., j, None, :]
+        p, w = effectors.w[ours, None] * p, square[..., ours]
         a, b = s[..., ours, :] - p, t[..., ours, :] - p
         if tree.slide[j]:
-            turn = np.vecdot(v, b - a).mean(axis=-1)
+            total = np.maximum(w.sum(axis=-1), TINY)
+            turn = (w * np.vecdot(v, b - a)).sum(axis=-1) / total
         else:
-            across = np.vecdot(v, np.cross(a, b)).sum(axis=-1)
-            along = (np.vecdot(a, b) - np.vecdot(a, v) * np.vecdot(b, v)).sum(axis=-1)
+            across = (w * np.vecdot(v, np.cross(a, b))).sum(axis=-1)
+            along = (w * (np.vecdot(a, b) - np.vecdot(a, v) * np.vecdot(b, v))).sum(axis=-1)
             turn = np.arctan2(across, along)
         turn = np.minimum(np.maximum(turn, low[..., j]), high[..., j])
         dtheta[..., j] = turn
@@ -54,4 +69,4 @@ def ccd(
     return dtheta
 
 
-ccd.wants = ("tree", "effectors", "frames", "low", "high")  # type: ignore[attr-defined]
+ccd.wants = ("tree", "effectors", "frames", "low", "high", "weights")  # type: ignore[attr-defined]

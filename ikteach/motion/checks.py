@@ -71,6 +71,33 @@ def mobility_of(tree: Tree, mobility: ArrayLike) -> Array:
     return s
 
 
+def weights_of(effectors: Effectors, weights: ArrayLike | None) -> Array | None:
+    """Make an array of weights (..., k), each 0 or more.
+
+    None stays None.
+    """
+    if weights is None:
+        return None
+    array, k = numbers("weights", weights), len(effectors)
+    if array.shape[-1:] != (k,) or not finite(array) or (array < 0).any():
+        needs = f"weights need a number from 0 up for each effector, (..., {k})"
+        raise ValueError(f"{needs}, not {shown(weights)}")
+    return array
+
+
+def wish_of(tree: Tree, wish: ArrayLike | None) -> Array | None:
+    """Make an array of a pose that is wished for, (..., n).
+
+    None stays None.
+    """
+    if wish is None:
+        return None
+    try:
+        return pose(tree, wish)
+    except ValueError as error:
+        raise ValueError(f"the wish is no pose: {error}") from None
+
+
 def frames_of(tree: Tree, theta: ArrayLike, frames: Frames | None) -> Frames:
     """Return the frames of a pose.
 
@@ -96,17 +123,24 @@ def error_bound(effectors: Effectors, max_error: ArrayLike | None) -> Array | No
 
 
 def batch_of(
-    theta: Array, targets: Array, free: Array, max_step: Array | None, max_error: Array | None
+    theta: Array,
+    targets: Array,
+    free: Array,
+    max_step: Array | None,
+    max_error: Array | None,
+    weights: Array | None = None,
+    wish: Array | None = None,
 ) -> tuple[int, ...]:
     """Return the batch of all that is given.
 
     ValueError if its parts do not fit together.
     """
-    if max_step is None and max_error is None and theta.ndim == free.ndim == targets.ndim - 1 == 1:
+    plain = max_step is None and max_error is None and weights is None and wish is None
+    if plain and theta.ndim == free.ndim == targets.ndim - 1 == 1:
         return ()  # one pose, the common case
     batches = [theta.shape[:-1], targets.shape[:-2], free.shape[:-1]]
     if max_step is not None:
         batches.append(max_step.shape)
-    if max_error is not None:
-        batches.append(max_error.shape[:-1])
-    return common_batch("theta, targets, mobility, max_step and max_error", *batches)
+    batches += [one.shape[:-1] for one in (max_error, weights, wish) if one is not None]
+    names = "theta, targets, mobility, max_step, max_error, weights and wish"
+    return common_batch(names, *batches)

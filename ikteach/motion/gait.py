@@ -17,11 +17,11 @@ from numbers import Real
 
 import numpy as np
 
-from ikteach.arrays import Array, ArrayLike
+from ikteach.arrays import Array, ArrayLike, Mask
 from ikteach.body import Effectors, Tree
 from ikteach.body.figures import human, simulator
 from ikteach.checks import common_batch, count, number, numbers, shown
-from ikteach.motion.path import Course
+from ikteach.motion.path import Course, Motion
 from ikteach.names import unknown
 
 # A wound of the right leg, as joint: mobility. The thesis (5.2.3) wounds by weights on joints.
@@ -31,7 +31,7 @@ ALIKE = 1e-3  # share of its length by which a limb may differ from a human's of
 
 
 @dataclass(frozen=True)
-class Gait:
+class Gait(Motion):
     """One motion with all its parameters; `dataclasses.replace` makes variants.
 
     speed            ω in sin(ω T) [rad/s]
@@ -61,6 +61,8 @@ class Gait:
     x_hand: float = 0.8
     forward: bool = False
     wound: Mapping[str, float] = field(default_factory=dict)
+
+    names = LIMBS
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str):
@@ -98,6 +100,21 @@ class Gait:
         targets[..., 2] = swing[..., None] * z
         return targets
 
+    @property
+    def floor(self) -> float:
+        """Height of the ground, under the lower foot [m]."""
+        return min(self.back_y_leg, self.front_y_leg)
+
+    def stands(self, phase: ArrayLike) -> Mask:
+        """Say which of `names` stand at phases (...), (..., 4).
+
+        Feet that go back would; these never lift.
+        """
+        ahead = np.cos(numbers("the phase", phase)) * np.sign(self.speed)
+        left, right = self.back_z_leg * ahead < 0, self.front_z_leg * ahead < 0
+        never = np.zeros(left.shape, dtype=bool)
+        return np.stack([left, right, never, never], axis=-1)
+
     def on(self, tree: Tree, effectors: Effectors) -> Course:
         """Fit this gait to a body.
 
@@ -117,8 +134,7 @@ class Gait:
             return np.asarray(pelvis + unit * self.at(phase)[order])
 
         ours = order == [*range(len(LIMBS))] and unit == 1 and not np.any(pelvis)
-        ground = min(self.back_y_leg, self.front_y_leg)
-        return Course(self.at if ours else at, float(pelvis[1] + unit * ground), unit)
+        return Course(self.at if ours else at, float(pelvis[1] + unit * self.floor), unit)
 
     def clock(self, frames: int, dt: float = 1 / 30) -> Array:
         """Return the gait time T at the end of each tick, (frames,) [s]."""
@@ -126,12 +142,9 @@ class Gait:
         return self.step_frequency * number("dt", dt) * self.slowdown * leaps
 
     @property
-    def period(self) -> float:
-        """Gait time of a cycle of two steps [s].
-
-        It is infinite if nothing swings.
-        """
-        return 2 * pi / abs(self.speed) if self.speed else np.inf
+    def rate(self) -> float:
+        """Phase per second of gait time [rad/s]: ω."""
+        return self.speed
 
     @property
     def pace(self) -> float:
@@ -149,16 +162,6 @@ class Gait:
         moved = np.zeros((*T.shape, 3))
         moved[..., 2] = self.pace * T if self.forward else 0.0
         return moved
-
-    def mobility(self, tree: Tree) -> Array:
-        """Return the tree's mobility with the wound in it, (n,).
-
-        LookupError for an unknown joint.
-        """
-        s = tree.mobility.copy()
-        for joint, value in self.wound.items():
-            s[tree.index(joint)] = value
-        return s
 
 
 walking = Gait(

@@ -20,6 +20,7 @@ class Here(NamedTuple):
     tree, effectors  the body
     frames           where its joints are
     low, high        (..., n) how far each joint may turn down and up in this step [rad]
+    weights          (..., k) of the targets, by which e and the rows of J are multiplied
     """
 
     tree: Tree
@@ -27,6 +28,7 @@ class Here(NamedTuple):
     frames: Frames
     low: Array
     high: Array
+    weights: Array
 
     @classmethod
     def of(
@@ -38,6 +40,7 @@ class Here(NamedTuple):
         limits: LimitRule,
         bounds: Bounds,
         mobility: Array,
+        weights: Array | None = None,
     ) -> "Here":
         """Look around from θ.
 
@@ -46,13 +49,14 @@ class Here(NamedTuple):
         low, high = (-np.inf, np.inf) if limits is ignore else (bounds.lower, bounds.upper)
         locked = mobility == 0
         low, high = (np.where(locked, 0, end - theta) for end in (low, high))
-        return cls(tree, effectors, frames, low, high)
+        weights = effectors.alike if weights is None else weights
+        return cls(tree, effectors, frames, low, high, weights)
 
     def at(self, i: int) -> "Here":
         """Pose i of a batch (p, n)."""
         frames = Frames(*(part[i] for part in self.frames))
-        low, high = (end[i] if end.ndim > 1 else end for end in (self.low, self.high))
-        return Here(self.tree, self.effectors, frames, low, high)
+        own = (end[i] if end.ndim > 1 else end for end in (self.low, self.high, self.weights))
+        return Here(self.tree, self.effectors, frames, *own)
 
 
 def wants(solver: Any) -> tuple[str, ...]:

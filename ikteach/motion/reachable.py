@@ -100,19 +100,24 @@ class _Limb(NamedTuple):
 
 
 def _limb(tree: Tree, effectors: Effectors, i: int) -> _Limb:
-    """Find the joints that carry effector i, full turns without limits."""
+    """Find the joints that carry effector i, full turns without limits.
+
+    A direction is a point on joints that all stand in one place, and whose slides stay.
+    """
     rows = np.array(sorted(tree.above(int(effectors.joints[i]))))
     free = ~tree.slide[rows] & (tree.upper[rows] - tree.lower[rows] >= FREE)
-    names, offsets = tuple(tree.names[row] for row in rows), tree.offsets[rows]
+    names, offsets = tuple(tree.names[row] for row in rows), effectors.w[i] * tree.offsets[rows]
     base, offsets[0] = offsets[0].copy(), 0
+    stays = tree.slide[rows] & (effectors.w[i] == 0)
     alone = replace(
         tree,
         names=names,
         parents=np.arange(len(rows)) - 1,
         offsets=offsets,
-        lower=np.where(free, -np.inf, tree.lower[rows]),
-        upper=np.where(free, np.inf, tree.upper[rows]),
-        **{what: getattr(tree, what)[rows] for what in ("axes", "slide", "rest", "mobility")},
+        lower=np.where(stays, 0, np.where(free, -np.inf, tree.lower[rows])),
+        upper=np.where(stays, 0, np.where(free, np.inf, tree.upper[rows])),
+        rest=np.where(stays, 0, tree.rest[rows]),
+        **{what: getattr(tree, what)[rows] for what in ("axes", "slide", "mobility")},
     )
     end = Effectors.of(alone, {"end": (names[-1], effectors.offsets[i].tolist())})
     return _Limb(alone, end, base, *_links(alone, end))

@@ -11,9 +11,10 @@ from ikteach.body.extent import extent
 from ikteach.body.forward import check_effectors, pose
 from ikteach.checks import common_batch, count, function, number, numbers, shown
 from ikteach.motion.checks import goals as checked_targets
-from ikteach.motion.checks import solver_of
+from ikteach.motion.checks import solver_of, wish_of
 from ikteach.motion.here import Here, situated, wants
 from ikteach.motion.rules import Bounds, Cap, LimitRule, hold, ignore, whole
+from ikteach.motion.wish import beside
 from ikteach.solvers import Solver, ask, dls_following
 from ikteach.solvers.door import takes_stacks
 from ikteach.solvers.stacked import SQUARE, unit
@@ -75,6 +76,7 @@ def solve(
     restarts: int = 0,
     seed: int = 0,
     weights: ArrayLike | None = None,
+    wish: ArrayLike | None = None,
 ) -> Solution:
     """Find a pose that meets targets (..., k, 3) [m], from the pose θ (..., n).
 
@@ -87,6 +89,7 @@ def solve(
     restarts    searches from other poses, drawn at random within the limits, where the first fails
     seed        of these draws: equal seeds give equal poses
     weights     (k,) how much each target counts against the others, 1 if not given
+    wish        a pose (n,) to which joints go on the way, as far as the targets do not feel it
 
     Leading dimensions are batches: each pose stops when it has arrived, and the others go on.
     ValueError if a shape is wrong or a number not finite; FloatingPointError if the solver's answer
@@ -101,7 +104,10 @@ def solve(
         starts = np.minimum(np.maximum(starts, tree.lower), tree.upper)
     rows = None if weights is None else _row_weights(effectors, weights)
     plain = batch == () and not takes_stacks(method)
-    search = _Search(tree, effectors, method, tolerance, most, limits, max_step, cap, rows, plain)
+    if (aside := wish_of(tree, wish)) is not None and aside.ndim != 1:
+        raise ValueError(f"one pose is wished for, ({len(tree)},), not {aside.shape}")
+    rules = tolerance, most, limits, max_step, cap
+    search = _Search(tree, effectors, method, *rules, rows, aside, plain)
     found = _descend(search, starts, goals)
     rng: np.random.Generator | None = None
     for _ in range(restarts):
@@ -140,6 +146,7 @@ class _Search(NamedTuple):
     """What all poses of one call have in common.
 
     weights  (3k,) of the rows of J, or None
+    aside    (n,) the pose that is wished for, or None
     plain    whether the solver is asked about one pose as `step` asks it, with no batch around
     """
 
@@ -152,6 +159,7 @@ class _Search(NamedTuple):
     max_step: float | None
     cap: Cap
     weights: Array | None
+    aside: Array | None
     plain: bool
 
     def weighted(self, J: Array, e: Array) -> tuple[Array, Array]:
@@ -162,7 +170,9 @@ class _Search(NamedTuple):
         """Take one iteration from θ (p, n), given e (p, 3k) and J (p, 3k, n)."""
         tree, solver, bounds = self.tree, self.solver, Bounds(self.tree, theta)
         if wants(solver):
-            here = Here.of(tree, self.effectors, frames, theta, self.limits, bounds, tree.mobility)
+            each = None if self.weights is None else self.weights[::3]
+            look = tree, self.effectors, frames, theta, self.limits, bounds, tree.mobility, each
+            here = Here.of(*look)
             solver = situated(solver, here.at(0) if self.plain else here)
         J, e = self.weighted(J, e)
         J.setflags(write=False)  # no solver may change them
@@ -173,7 +183,12 @@ class _Search(NamedTuple):
 
         def wish(s: Array | None) -> Array:
             """Ask how joints of mobility s would take e away."""
-            dtheta = answer(J) if s is None else s * answer(J * s[..., None, :])
+            A = J if s is None else J * s[..., None, :]
+            dtheta = answer(A)
+            if self.aside is not None:
+                gap = self.aside - theta
+                dtheta = dtheta + beside(A, gap if s is None else gap * (s != 0))
+            dtheta = dtheta if s is None else s * dtheta
             if self.max_step is None:
                 return dtheta
             return self.cap(dtheta, self.max_step, self.effectors.chains)

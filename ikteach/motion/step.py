@@ -19,9 +19,12 @@ from ikteach.motion.checks import (
     goals,
     mobility_of,
     solver_of,
+    weights_of,
+    wish_of,
 )
 from ikteach.motion.here import Here, situated, wants
 from ikteach.motion.rules import Bounds, Cap, LimitRule, clamp_error, hold, whole
+from ikteach.motion.wish import beside
 from ikteach.solvers import Solver, ask
 
 
@@ -40,6 +43,7 @@ class Step(NamedTuple):
     aim     (..., 3k)     e as the solver was given it: shortened to max_error [m]
     allowed (..., n)      wanted after the cap [rad]
     mobility (n,)         s that the step was taken with; (..., n) where it was given so
+    weights (k,)          of the targets; (..., k) where they were given so
     """
 
     theta: Array
@@ -52,6 +56,7 @@ class Step(NamedTuple):
     aim: Array
     allowed: Array
     mobility: Array
+    weights: Array
 
 
 def step(
@@ -67,6 +72,8 @@ def step(
     mobility: ArrayLike | None = None,
     limits: LimitRule = hold,
     at_targets: bool = False,
+    weights: ArrayLike | None = None,
+    wish: ArrayLike | None = None,
     frames: Frames | None = None,
 ) -> Step:
     """Move the pose θ (..., n) by one step of `solver` towards targets (..., k, 3) [m].
@@ -78,6 +85,9 @@ def step(
     mobility    s (..., n), 0 locked .. 1 free, in place of the tree's: Δθ = s ∘ solver(J ∘ s, e)
     limits      the rule at a limit: `hold`, `clip` or `ignore`
     at_targets  form J at the targets in place of the effectors (thesis 3.2)
+    weights     (..., k), 0 or more: the solver is given w_i J_i and w_i e_i, so that where targets
+                contradict each other the heavier is met more nearly
+    wish        a pose (..., n) to which joints go as far as the targets do not feel it (`wish`)
     frames      forward(tree, theta), from whoever has it already
 
     Where promises meet, the first of these is kept:
@@ -85,7 +95,8 @@ def step(
     2. no joint turns further than max_step;
     3. a joint within its limits stays there, and one that is beyond comes back, at once or as far
        as 2 lets it, and never goes further out (unless limits are ignored);
-    4. the joints turn as the solver asks.
+    4. the joints turn as the solver asks;
+    5. and beside that towards the wish.
 
     ValueError if a shape is wrong or a number not finite; LookupError for an unknown method;
     FloatingPointError if the solver's answer is not finite. Order of one tick: Buss.
@@ -95,23 +106,22 @@ def step(
     s = locate(frames, effectors)
     targets, solver = goals(effectors, targets), solver_of(solver)
     max_step, max_error = bound("max_step", max_step), error_bound(effectors, max_error)
-    function("limits", limits)
-    function("cap", cap)
+    cap, limits = function("cap", cap), function("limits", limits)
     free = tree.mobility if mobility is None else mobility_of(tree, mobility)
-    batch = batch_of(theta, targets, free, max_step, max_error)
+    weights, wish = weights_of(effectors, weights), wish_of(tree, wish)
+    batch = batch_of(theta, targets, free, max_step, max_error, weights, wish)
 
     J = jacobian(tree, frames, effectors, at=targets if at_targets else s)
-    e = aim = _stacked(targets - s)
-    if max_error is not None:
-        aim = _stacked(clamp_error(targets - s, max_error))
+    e = _stacked(targets - s)
+    aim = e if max_error is None else _stacked(clamp_error(targets - s, max_error))
     for array in (J, e, aim):  # no solver may change them
         array.setflags(write=False)
-
     all_free = free is tree.mobility and tree.free
-    question = _Question(solver, theta, J, aim, free, all_free, max_step, cap, effectors.chains)
+    asked = (solver, theta, J, aim, free, all_free, max_step, cap, effectors.chains, weights, wish)
+    question = _Question(*asked)
     bounds = Bounds(tree, theta, question.turn())
     if wants(solver):
-        here = Here.of(tree, effectors, frames, theta, limits, bounds, free)
+        here = Here.of(tree, effectors, frames, theta, limits, bounds, free, weights)
         question.solver = situated(solver, here)
     wanted = question.answer(free, aim)
     if wanted.ndim <= len(batch):  # there is a cap for each of a batch
@@ -122,7 +132,8 @@ def step(
     if max_step is not None and np.count_nonzero(held):
         beyond = (to < tree.lower) | (to > tree.upper)  # it would be back but for the cap
         capped = capped | (beyond & held & (free != 0)).any(axis=-1)
-    return Step(to, e, J, wanted, to - theta, np.asarray(capped), held, aim, allowed, free)
+    capped, each = np.asarray(capped), effectors.alike if weights is None else weights
+    return Step(to, e, J, wanted, to - theta, capped, held, aim, allowed, free, each)
 
 
 @dataclass
@@ -138,13 +149,23 @@ class _Question:
     max_step: Array | None
     cap: Cap
     chains: Index
+    weights: Array | None
+    wish: Array | None
     capped: Mask | None = None  # where the cap shortened the last answer
 
     def answer(self, s: Array, e: Array) -> Array:
         """Ask how joints with mobility s would take e away: s ∘ solver(J ∘ s, e)."""
-        if self.all_free and s is self.free:
-            return ask(self.solver, self.J, e)
-        return s * ask(self.solver, self.J * s[..., None, :], e)
+        J = self.J
+        as_it_is = s is self.free and self.all_free
+        if self.weights is not None:
+            w = np.repeat(self.weights, 3, axis=-1)
+            J, e = w[..., None] * J, w * e
+        if not as_it_is:
+            J = J * s[..., None, :]
+        dtheta = ask(self.solver, J, e)
+        if self.wish is not None:
+            dtheta = dtheta + beside(J, (self.wish - self.theta) * (s != 0))
+        return dtheta if as_it_is else s * dtheta
 
     def shorten(self, wanted: Array) -> Array:
         """Apply the cap."""

@@ -1,7 +1,7 @@
 """A figure that follows targets through time, one method, everything kept."""
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 from time import perf_counter
@@ -12,7 +12,7 @@ import numpy as np
 from ikteach.arrays import Array, ArrayLike, Mask
 from ikteach.body import Effectors, Tree, forward, locate
 from ikteach.checks import common_batch, count, function, number, numbers, shown
-from ikteach.motion.checks import checked, solver_of
+from ikteach.motion.checks import checked, solver_of, wish_of
 from ikteach.motion.rank import smallest_sigma
 from ikteach.motion.step import step
 from ikteach.names import unknown
@@ -85,6 +85,7 @@ def track(
     dt: float | None = None,
     times: ArrayLike | None = None,
     iterations: int = 1,
+    wish: ArrayLike | None = None,
     clamp_rule: ErrorClampRule | None = None,
     **options: Any,
 ) -> Track:
@@ -93,10 +94,12 @@ def track(
     theta       the start [rad], the rest pose if not given
     dt, times   seconds per frame (1/30 if not given), or the time (T,) of each: one of the two
     iterations  steps per frame
+    wish        a pose for each frame, (T, ..., n), or one for all, to which joints go beside the
+                targets
     clamp_rule  how far the error is clamped next: a function of e (..., 3k) before and the
                 distances (..., k) after a step, giving max_error; before the first step no clamp.
                 `growing_clamp` is Buss's for SDLS
-    options     go to `step`: max_error, max_step, cap, mobility, limits, at_targets
+    options     go to `step`: max_error, max_step, cap, mobility, limits, at_targets, weights
 
     ValueError if a shape is wrong or a number not finite, TypeError for an unknown option; the
     other errors are those of `step`.
@@ -113,12 +116,12 @@ def track(
     iterations, clock = count("iterations", iterations), _clock(len(targets), dt, times)
     start, targets = checked(tree, start, effectors, targets)
     common_batch("theta and targets", start.shape[:-1], targets.shape[1:-2])
-    chosen = solver_of(solver)
+    chosen, wishes = solver_of(solver), _per_frame(tree, wish, len(targets))
     if clamp_rule is not None:
         function("clamp_rule", clamp_rule)
     kept: Any = [], [], [], []
     pose, frames, began = start, None, perf_counter()
-    for goal in targets:
+    for goal, options["wish"] in zip(targets, wishes, strict=True):
         capped: Any = 0.0
         for _ in range(iterations):
             done = step(tree, pose, effectors, goal, chosen, frames=frames, **options)
@@ -143,6 +146,15 @@ OPTIONS = [  # what `track` may be told: its own, and what goes to `step` at eve
     for name, parameter in inspect.signature(asked).parameters.items()
     if parameter.kind is parameter.KEYWORD_ONLY and name != "frames"
 ]
+
+
+def _per_frame(tree: Tree, wish: ArrayLike | None, frames: int) -> Iterable[Array | None]:
+    """Give the wish of each frame, of (T, ..., n) or of one pose (n,) for all."""
+    if (poses := wish_of(tree, wish)) is None or poses.ndim == 1:
+        return [poses] * frames
+    if len(poses) != frames:
+        raise ValueError(f"{frames} frames need a wish for each, (T, ..., n), not {poses.shape}")
+    return poses
 
 
 def _clock(frames: int, dt: float | None, times: ArrayLike | None) -> Array:

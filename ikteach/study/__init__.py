@@ -5,6 +5,7 @@ measures    summaries of logs and runs
 sessions    ticks, poses and events of a live figure
 directions  one step by singular directions (chapter 6)
 reach       the simulator of chapter 10
+gaits       how natural a run is (chapter 11)
 experiment  runs made to be compared, starts, counts and times
 trials      the fair experiment of chapter 8
 verdicts    rules by which its table says whether a sentence holds
@@ -13,6 +14,7 @@ thesis      these sentences, as data
 """
 
 from ikteach.study.directions import by_direction
+from ikteach.study.gaits import gait_report
 from ikteach.study.measures import (
     MEASURES,
     by_phase,
@@ -36,6 +38,7 @@ __all__ = [
     "distances",
     "events",
     "follow",
+    "gait_report",
     "log",
     "many",
     "ranges",

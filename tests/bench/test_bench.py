@@ -5,6 +5,7 @@ import xml.etree.ElementTree as ET
 import damping
 import fuzz
 import fuzz_solve
+import motion
 import numpy as np
 import peers
 import reach
@@ -133,3 +134,12 @@ def test_every_peer_gets_the_same_body():
     ]
     bodies = ET.fromstring(peers.mjcf(c)).iter("body")
     assert {body.get("name") for body in bodies} == set(tree.names)
+
+
+def test_motion_prints_what_is_met(capsys, monkeypatch):
+    monkeypatch.setattr(motion, "METHODS", {"dls": "dls"})
+    for part in (motion.files, motion.retargeted, motion.walks):
+        part()
+    told = capsys.readouterr().out
+    assert told.count("\n") == 2 + 4 + 3 * 5 + 4
+    assert "nan" not in told

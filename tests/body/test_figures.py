@@ -1,13 +1,16 @@
 """The figures of the course against the numbers they were made from."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
 from numpy.testing import assert_allclose, assert_array_equal
 from reference import DATA, model
+from strategies import SEEDS, anybody, poses
 
-from ikteach import figures, forward, jacobian, locate
+from ikteach import Tree, figures, forward, jacobian, locate
 
 HUMAN = json.loads((DATA / "human20.json").read_text())
 
@@ -134,3 +137,42 @@ def test_the_planar_model_stays_in_its_plane(links, length):
 def test_the_planar_model_has_at_most_three_links(links):
     with pytest.raises(ValueError, match="1, 2 or 3 links"):
         figures.planar_model(links)
+
+
+def test_a_walker_has_30_rows_and_stands_on_bent_knees():
+    tree, effectors = figures.walker()
+    assert len(tree) == 30
+    assert len(effectors) == 9
+    assert (tree.rest > tree.lower).all()
+    human = figures.human().tree
+    for name in human.names:  # a human's, but for what hangs from the pelvis and for the rest
+        ours, theirs = (one.joints()[one.index(name)] for one in (tree, human))
+        assert replace(ours, parent=None, rest=None) == replace(theirs, parent=None, rest=None)
+
+
+@given(anybody(limits=True, directions=True), SEEDS)
+def test_a_floating_body_is_the_same_body_moved_and_turned(figure, seed):
+    rng = np.random.default_rng(seed)
+    free = figures.floating(figure, name="of the air")
+    theta, gone, turn = poses(figure.tree, rng), rng.normal(size=3), rng.uniform(-1, 1, 3)
+    frames = forward(free.tree, np.concatenate([gone, turn, theta]))
+    R, w = frames.orientations[5], figure.effectors.w[:, None]
+    s = locate(forward(figure.tree, theta), figure.effectors)
+    assert_allclose(locate(frames, free.effectors), w * gone + s @ R.T, atol=1e-9)
+
+
+@pytest.mark.parametrize("order", ["YXZ", "XYZ", "ZX"])
+def test_a_ball_turns_in_its_order(order):
+    tree = Tree.of(figures.ball("hip", order=order, lower=-1, upper=[2, 1, 3][: len(order)]))
+    assert tree.names == tuple(f"hip.{letter.lower()}" for letter in order)
+    assert tree.upper.tolist() == [2, 1, 3][: len(order)]
+    alone = [Tree.of(figures.ball("hip", order=letter)) for letter in order]
+    turns = [forward(one, [0.3 * i]).orientations[0] for i, one in enumerate(alone, start=1)]
+    R = forward(tree, 0.3 * np.arange(1, len(order) + 1)).orientations[-1]
+    assert_allclose(R, np.linalg.multi_dot(turns), atol=1e-15)
+
+
+@pytest.mark.parametrize("options", [{"order": "XYX"}, {"order": ""}, {"order": 3}, {"lower": [1]}])
+def test_a_ball_that_is_none_is_refused(options):
+    with pytest.raises(ValueError, match="of a ball"):
+        figures.ball("hip", **options)

@@ -3,15 +3,15 @@
 import numpy as np
 from hypothesis import given
 from numpy.testing import assert_allclose, assert_array_equal
-from strategies import SEEDS, SHAPES, anybody, poses
+from strategies import SEEDS, SHAPES, anybody, bodies, poses
 
-from ikteach import figures, forward, jacobian, locate
+from ikteach import Effectors, figures, forward, jacobian, locate
 from ikteach.body.cross import YZXY, cross
 
 H = 1e-5  # the error of a central difference is of order H²
 
 
-@given(anybody(), SHAPES, SEEDS)
+@given(anybody(directions=True), SHAPES, SEEDS)
 def test_equals_central_differences(figure, shape, seed):
     tree, effectors = figure
     theta = poses(tree, np.random.default_rng(seed), shape)
@@ -25,7 +25,7 @@ def test_equals_central_differences(figure, shape, seed):
         assert_allclose(J[..., j], column, atol=1e-7)
 
 
-@given(anybody(), SHAPES, SEEDS)
+@given(anybody(directions=True), SHAPES, SEEDS)
 def test_a_batch_equals_a_loop(figure, shape, seed):
     tree, effectors = figure
     rng = np.random.default_rng(seed)
@@ -68,3 +68,37 @@ def test_cross_is_the_cross_product():
     a, b = np.random.default_rng(0).normal(size=(2, 5, 3, 7))
     ours = cross(a.take(YZXY, axis=-2), b.take(YZXY, axis=-2))
     assert_allclose(ours, np.cross(a, b, axis=-2), atol=1e-15)
+
+
+@given(bodies(directions=True), SEEDS)
+def test_points_are_the_same_beside_directions(figure, seed):
+    """Bit for bit: what stands beside a point changes nothing of it."""
+    tree, effectors = figure
+    points = effectors.w == 1
+    if not points.any():
+        return
+    names = {
+        name: (tree.names[joint], offset)
+        for name, joint, offset, w in zip(
+            effectors.names, effectors.joints, effectors.offsets.tolist(), points, strict=True
+        )
+        if w
+    }
+    alone = Effectors.of(tree, names)
+    frames = forward(tree, poses(tree, np.random.default_rng(seed)))
+    assert_array_equal(locate(frames, effectors)[points], locate(frames, alone))
+    J = jacobian(tree, frames, effectors).reshape(-1, 3, len(tree))[points]
+    assert_array_equal(J.reshape(-1, len(tree)), jacobian(tree, frames, alone))
+
+
+@given(bodies(directions=True, slides=True), SEEDS)
+def test_a_direction_is_turned_and_not_moved(figure, seed):
+    tree, effectors = figure
+    theta = poses(tree, np.random.default_rng(seed))
+    moved = theta + tree.slide
+    turned = effectors.w == 0
+    s, t = (locate(forward(tree, pose), effectors)[turned] for pose in (theta, moved))
+    assert_allclose(s, t, atol=1e-12)
+    assert_allclose(
+        np.linalg.norm(s, axis=1), np.linalg.norm(effectors.offsets[turned], axis=1), rtol=1e-12
+    )

@@ -4,7 +4,9 @@ from math import inf, nan
 
 import numpy as np
 import pytest
+from hypothesis import given
 from numpy.testing import assert_allclose, assert_array_equal
+from strategies import anybody
 
 from ikteach import Effectors, Joint, Tree, figures
 
@@ -171,3 +173,30 @@ def test_chains_of_the_human_are_two_legs_and_the_arms_with_the_spine():
 def test_axes_are_unit_vectors_whatever_their_length():
     tree = Tree.of([Joint("a", axis=(3e-200, 0, 4e-200)), Joint("b", axis=(0, 3e200, 4e200))])
     assert_allclose(tree.axes, [[0.6, 0, 0.8], [0, 0.6, 0.8]])
+
+
+@given(anybody(limits=True))
+def test_a_tree_of_its_own_joints_is_the_same(figure):
+    tree = figure.tree
+    again = Tree.of(tree.joints())
+    assert again.names == tree.names
+    for name in ("parents", "offsets", "slide", "lower", "upper", "rest", "mobility"):
+        assert_array_equal(getattr(again, name), getattr(tree, name))
+    assert_allclose(again.axes, tree.axes, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("directions", "error", "words"),
+    [
+        ([], TypeError, "effectors are"),
+        ({"gaze": ("joint3", (0, 0, 0))}, ValueError, "the direction 'gaze' is zero"),
+        ({"hand": ("joint3", (0, 0, 1))}, ValueError, "two effectors called 'hand'"),
+        ({"gaze": ("head", (0, 0, 1))}, LookupError, "no joint 'head'"),
+        ({"gaze": ("joint3", (0, 1))}, ValueError, "'gaze' must be three"),
+        ({"gaze": "joint3"}, ValueError, "'gaze' needs"),
+    ],
+)
+def test_a_direction_that_is_none_is_named(directions, error, words):
+    tree = figures.planar_arm(3).tree
+    with pytest.raises(error, match=words):
+        Effectors.of(tree, {"hand": ("joint3", (1, 0, 0))}, directions=directions)

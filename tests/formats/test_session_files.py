@@ -74,6 +74,17 @@ def test_all_comes_back_exactly(session, tmp_path):
     assert_array_equal(after.tracks()["mix"].theta, session.tracks()["mix"].theta)
 
 
+def test_directions_come_back(tmp_path):
+    session = Session(figures.floating(figures.walker(), name="treadmill"))
+    session.tick()
+    save(tmp_path / "walker", session)
+    run = load(tmp_path / "walker")
+    for field in fields(Effectors):
+        assert_array_equal(
+            getattr(run.effectors, field.name), getattr(session.effectors, field.name)
+        )
+
+
 def test_any_body_and_no_tick(tmp_path):
     joints = [Joint("a", axis=(1, 2, 3)), Joint("ö, b", "a", (0.1, 0, 0), slide=True, lower=-1)]
     tree = Tree.of(joints)

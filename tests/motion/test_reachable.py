@@ -313,3 +313,16 @@ def test_bad_targets_are_named():
         reachable(tree, effectors, np.zeros((3, 3)))
     with pytest.raises(ValueError, match=r"target of 'foot.l' is not finite"):
         reachable(tree, effectors, np.full((4, 3), np.nan))
+
+
+@settings(max_examples=20)
+@given(bodies(limits=True, directions=True), SEEDS)
+def test_where_a_pose_takes_points_and_directions_is_reachable(figure, seed):
+    tree, effectors = figure
+    theta = poses(tree, np.random.default_rng(seed))
+    targets = locate(forward(tree, theta), effectors)
+    directions = effectors.w == 0
+    assert reachable(tree, effectors, targets, within=0.05)[directions].all()
+    longer = np.where(directions[:, None], 2 * targets, targets)
+    long = np.linalg.norm(targets, axis=-1)
+    assert not (reachable(tree, effectors, longer) & directions & (long > 1e-6)).any()

@@ -154,7 +154,8 @@ def lanes(folder: Path, full: bool) -> list[list[list[Part]]]:
         "servers, notebooks, widgets",
         [pytest("--numprocesses", "2", "--dist", "loadfile", *apart, nice=False)],
     )
-    page = Part("JavaScript", [[*NPM, "test"]], needs=[[*NPM, "ci", "--no-audit", "--no-fund"]])
+    javascript, install = [*NPM, "test"], [*NPM, "ci", "--no-audit", "--no-fund"]
+    page = Part("JavaScript", [javascript], {"PYTHON": sys.executable}, needs=[install])
     browsers = [Part("browser", [pytest("tests/browser", nice=False)])]
     engines = Part(
         "Firefox and WebKit",

@@ -12,8 +12,11 @@ SEEDS = st.integers(0, 2**32 - 1)
 
 
 @st.composite
-def bodies(draw, limits=False, slides=True):
-    """Any tree: hinges and slides, branches, effectors anywhere and several on one joint."""
+def bodies(draw, limits=False, slides=True, directions=False):
+    """Any tree: hinges and slides, branches, effectors anywhere and several on one joint.
+
+    The last effectors are directions, if these are asked for.
+    """
     n, k = draw(st.integers(1, 9)), draw(st.integers(1, 4))
     rng = np.random.default_rng(draw(SEEDS))
     joints = []
@@ -34,7 +37,10 @@ def bodies(draw, limits=False, slides=True):
     tree = Tree.of(joints)
     carriers = draw(st.lists(st.integers(0, n - 1), min_size=k, max_size=k))
     points = {f"e{i}": (f"j{j}", rng.normal(size=3)) for i, j in enumerate(carriers)}
-    return figures.Figure(tree, Effectors.of(tree, points))
+    turned = draw(st.integers(0, k)) if directions else 0
+    vectors = dict(list(points.items())[k - turned :])
+    points = {name: at for name, at in points.items() if name not in vectors}
+    return figures.Figure(tree, Effectors.of(tree, points, directions=vectors))
 
 
 KNOWN = st.sampled_from([figures.human(), figures.double_y(), figures.y_shape()])

@@ -7,11 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from ikteach.arrays import Array
+from ikteach.arrays import Array, ArrayLike
 from ikteach.body import Frames, forward, locate
 from ikteach.body.figures import Figure
 from ikteach.checks import count, number, shown
-from ikteach.motion.gait import Gait
 from ikteach.motion.live.history import History
 from ikteach.motion.live.log import Event, Log, Moment
 from ikteach.motion.live.settings import (
@@ -21,12 +20,13 @@ from ikteach.motion.live.settings import (
     figure_of,
     in_words,
     motion_of,
+    pose_of,
     try_options,
     usual_methods,
 )
 from ikteach.motion.methods import Methods, methods_of
 from ikteach.motion.mix import PerPose
-from ikteach.motion.path import Path
+from ikteach.motion.path import Motion
 from ikteach.motion.step import step
 from ikteach.motion.track import Track
 from ikteach.names import unknown
@@ -44,19 +44,23 @@ class Play:
     def __init__(
         self,
         figure: Figure | None = None,
-        gait: Gait | Path | None = None,
+        gait: Motion | None = None,
         methods: Methods | None = None,
         *,
         method: str | None = None,
         dt: float = 1 / 30,
         keep: int = 3000,
         keep_events: int = 1000,
+        iterations: int = 1,
+        start: ArrayLike | None = None,
         **options: Any,
     ) -> None:
         self.tree, self.effectors = figure_of(figure)
         self.dt = number("dt", dt)
         if not self.dt:
             raise ValueError(f"dt must be more than 0, not {shown(dt)}")
+        self.iterations = count("iterations", iterations)
+        self.start = pose_of(self.tree, start)
         check_options(options, SESSION)
         try_options(self.tree, self.effectors, options)
         self.history = History(count("keep", keep), count("keep_events", keep_events))
@@ -77,7 +81,7 @@ class Play:
         self.history.note(self._event(kind, what))
 
     def reset(self) -> None:
-        """Go back to the rest pose and time zero.
+        """Go back to the start and time zero.
 
         The record is then empty. Settings stay as they are, targets set by hand too. The events go
         on.
@@ -113,7 +117,7 @@ class Play:
         time = self.time + elapsed
         if self._settings.by_hand is not None:
             return time, self.phase, self.advance, self.targets
-        phase = self.phase + gait.speed * elapsed
+        phase = self.phase + gait.rate * elapsed
         gone = course.size * gait.pace * elapsed if gait.forward else 0.0
         return time, phase, self.advance + gone, course.at(phase)
 
@@ -121,9 +125,14 @@ class Play:
         """Let time leap: solve first, so that a solver that fails changes nothing."""
         settings, (time, phase, advance, targets) = self._settings, self.ahead()
         options = settings.options_of_all() | {"mobility": settings.gait.mobility(self.tree)}
-        solver, frames = PerPose(settings.methods.values()), self.frames
-        to = step(self.tree, self._poses, self.effectors, targets, solver, frames=frames, **options)
-        self._stand(to.theta)
+        options["wish"] = settings.course.wish(phase)
+        frames: Frames | None = self.frames
+        theta, capped = self._poses, np.zeros(len(self._poses), dtype=bool)
+        for _ in range(self.iterations):
+            solver = PerPose(settings.methods.values())
+            to = step(self.tree, theta, self.effectors, targets, solver, frames=frames, **options)
+            theta, frames, capped = to.theta, None, capped | to.capped
+        self._stand(theta)
         self.time, self.phase, self.advance, self.targets = time, phase, advance, targets
         self.history.add(
             Moment(
@@ -136,7 +145,7 @@ class Play:
                 targets=targets,
                 theta=to.theta,
                 error=self._distances(),
-                capped=to.capped,
+                capped=capped,
                 held=to.held,
             )
         )
@@ -222,7 +231,8 @@ class Play:
             "by_hand": self._settings.by_hand is not None,
             "targets": self.targets.tolist(),
             "dt": self.dt,
-            "gait": in_words(vars(self._settings.gait)),
+            "iterations": self.iterations,
+            "gait": in_words(self._settings.gait.settings()),
             "methods": in_words(self._settings.methods),
             "options": in_words(self._settings.options),
             "caps": in_words(self._settings.caps),
@@ -233,7 +243,7 @@ class Play:
     def _begin(self) -> None:
         self.time = self.phase = self.advance = 0.0
         self.ticks = self._waited = 0
-        self._stand(np.tile(self.tree.rest, (len(self._settings.methods), 1)))
+        self._stand(np.tile(self.start, (len(self._settings.methods), 1)))
         self._retarget()
         self.history.clear()
 

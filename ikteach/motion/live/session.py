@@ -17,7 +17,7 @@ from ikteach.motion.gait import Gait
 from ikteach.motion.live.log import Event
 from ikteach.motion.live.play import Play
 from ikteach.motion.live.settings import check_options, in_words, motion_of
-from ikteach.motion.path import Path
+from ikteach.motion.path import Motion
 from ikteach.motion.step import step
 from ikteach.names import unknown
 from ikteach.solvers import Solver
@@ -29,14 +29,17 @@ class Session(Play):
     All methods have the same targets and the same clock.
 
     figure    the human if none is given
-    gait      the motion of the targets, a `Gait` or a `Path`; change it with `change(...)` or put
-              another in its place. If none is given, a figure that can walk walks, and any other's
-              targets go where its own joints would swing them
+    gait      the motion of the targets: a `Gait`, a `Path`, or one of `motion.paths`, a `Walk` or
+              a `Recorded`; change it with `change(...)` or put another in its place. If none is
+              given, a figure that can walk walks, and any other's targets go where its own joints
+              would swing them
     methods   {name: solver}, and whatever `methods_of` takes; put another to a name with `use`.
               If none are given, those of `SOLVERS`, with the λ of dls in proportion to the body
     method    the one that is shown; if none is given, dls or the first
     dt        clock time of one tick [s]
     keep      how many ticks the record holds; `dropped` counts those it has let go
+    iterations  steps a tick: with one alone, a figure lags behind what goes fast
+    start     the pose at the beginning (n,) [rad], the rest pose if none is given
     options   go to `step`, the same for all methods; set them with `adjust`
 
     caps      {method: max_step [rad] or None}: the step caps of methods that have their own; set
@@ -49,29 +52,29 @@ class Session(Play):
     """
 
     @property
-    def gait(self) -> Gait | Path:
+    def gait(self) -> Motion:
         """The motion of the targets."""
         return self._settings.gait
 
     @gait.setter
-    def gait(self, gait: Gait | Path) -> None:
+    def gait(self, gait: Motion) -> None:
         gait, course = motion_of(self.tree, self.effectors, gait)
-        new, old = vars(gait), vars(self.gait)
+        if gait is self.gait:
+            return
+        new, old = gait.settings(), self.gait.settings()
         what = {n: value for n, value in new.items() if n not in old or value != old[n]}
-        if "name" in what or "curve" in what:
-            what = {"motion": gait.name}
-        if what:
-            self._change("gait", what, gait=gait, course=course)
+        if not what and isinstance(gait, Gait):
+            return
+        if not what or "name" in what or "curve" in what or set(new) != set(old):
+            what = {"motion": gait.name}  # another, or other data
+        self._change("gait", what, gait=gait, course=course)
 
     def change(self, **parameters: Any) -> None:
         """Give the gait other parameters.
 
-        TypeError or ValueError says which one cannot be.
+        LookupError, TypeError or ValueError says which one cannot be.
         """
-        unfit = [name for name in parameters if name not in vars(self.gait)]
-        if unfit:
-            raise LookupError(unknown("gait parameter", unfit[0], vars(self.gait)))
-        self.gait = replace(self.gait, **parameters)
+        self.gait = self.gait.change(**parameters)
 
     @property
     def methods(self) -> dict[str, Solver]:

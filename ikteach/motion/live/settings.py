@@ -8,25 +8,27 @@ from typing import Any
 
 import numpy as np
 
-from ikteach.arrays import Array
+from ikteach.arrays import Array, frozen
 from ikteach.body import Effectors, Tree, forward, locate
 from ikteach.body.extent import extent
-from ikteach.body.figures import Figure, human
+from ikteach.body.figures import Figure, human, walker
+from ikteach.body.forward import pose
 from ikteach.checks import shown
-from ikteach.motion.gait import LIMBS, Gait, stature, walking
+from ikteach.motion.gait import LIMBS, stature, walking
 from ikteach.motion.mix import Mix
-from ikteach.motion.path import Course, Path, swinging
+from ikteach.motion.path import Course, Motion, swinging
+from ikteach.motion.paths.walk import Walk
 from ikteach.motion.step import step
 from ikteach.names import unknown
 from ikteach.solvers import SOLVERS, Solver, dls, name_of, transpose
 
 DAMPING = inspect.signature(dls).parameters["damping"].default  # for a human [m/rad]
-# The options of `step` that a session takes: all but the mobility, which is the gait's wound, and
-# the frames, which are those of the poses.
+# The options of `step` that a session takes: all but the mobility, which is the gait's wound, the
+# wish, which is the gait's too, and the frames, which are those of the poses.
 OPTIONS = [
     name
     for name, parameter in inspect.signature(step).parameters.items()
-    if parameter.kind is parameter.KEYWORD_ONLY and name not in ("mobility", "frames")
+    if parameter.kind is parameter.KEYWORD_ONLY and name not in ("mobility", "wish", "frames")
 ]
 SESSION = (
     "figure",
@@ -36,6 +38,8 @@ SESSION = (
     "dt",
     "keep",
     "keep_events",
+    "iterations",
+    "start",
 )  # options of a session
 
 
@@ -54,7 +58,7 @@ class Settings:
     by_hand  the targets (k, 3) that were put by hand [m], None where the gait moves them
     """
 
-    gait: Gait | Path
+    gait: Motion
     course: Course
     methods: dict[str, Solver]
     method: str
@@ -101,19 +105,39 @@ def figure_of(value: Any) -> Figure:
     return Figure(tree, effectors)
 
 
-def motion_of(tree: Tree, effectors: Effectors, gait: Any = None) -> tuple[Gait | Path, Course]:
+def motion_of(tree: Tree, effectors: Effectors, gait: Any = None) -> tuple[Motion, Course]:
     """Return a motion, and its course for this figure.
 
-    If none is given, it is the usual motion of the figure: one that can walk walks, and the targets
-    of any other go where its own joints would swing them. TypeError for anything but a motion,
+    If none is given, it is the usual motion of the figure: one that can walk walks, a walker with a
+    free pelvis as naturally as it can, and the targets of any other go where its own joints would
+    swing them. TypeError for anything but a motion,
     ValueError for a motion of other effectors.
     """
     if gait is None:
         walks = set(effectors.names) == set(LIMBS) or stature(tree, effectors)
-        gait = walking if walks else swinging(tree, effectors)
-    if not isinstance(gait, Gait | Path):
+        free = set(effectors.names) == set(Walk.names) and set(walker().tree.names) <= set(
+            tree.names
+        )
+        gait = walking if walks else Walk() if free else swinging(tree, effectors)
+    if not isinstance(gait, Motion):
         raise TypeError(f"a motion is a Gait or a Path, such as gait.walking, not {shown(gait)}")
     return gait, gait.on(tree, effectors)
+
+
+def pose_of(tree: Tree, start: Any = None) -> Array:
+    """Check a pose to start from; None is the rest pose.
+
+    ValueError if it is none, or beyond a limit.
+    """
+    if start is None:
+        return tree.rest
+    theta = pose(tree, start)
+    if theta.ndim != 1:
+        raise ValueError(f"the start is one pose ({len(tree)},), not {theta.shape}")
+    out = (theta < tree.lower) | (theta > tree.upper)
+    if out.any():
+        raise ValueError(f"the start has {shown(tree.names[out.argmax()])} beyond its limits")
+    return frozen(theta)
 
 
 def usual_methods(tree: Tree, effectors: Effectors) -> dict[str, Solver]:

@@ -8,7 +8,7 @@ import numpy as np
 from ikteach.arrays import Array, Mask
 from ikteach.body import Effectors, Tree
 from ikteach.body.extent import Extent
-from ikteach.body.figures import Figure, human, simulator
+from ikteach.body.figures import BALL, Figure, floating, human, simulator, walker
 from ikteach.body.tree import GROUND
 from ikteach.view.stage.colours import HAIR, JOINTS, SHIRT, SHOES, SKIN, TROUSERS
 from ikteach.view.stage.forms import ORIGIN, Ball, Limb, Vector
@@ -36,6 +36,21 @@ def human_skin() -> list[Part]:
     ]
     for side in "lr":
         parts += _limbs(side, "shoulder.turn", "hip.turn")
+    return parts
+
+
+def floating_skin(root: str = "root") -> list[Part]:
+    """Build the human's skin on the rows of a free pelvis."""
+    return [part._replace(joint=part.joint or f"{root}.z") for part in human_skin()]
+
+
+def walker_skin() -> list[Part]:
+    """Build the skin of `figures.walker()`, with feet in two parts."""
+    parts = [part for part in floating_skin("pelvis") if part.colour != SHOES]
+    for side in "lr":
+        sole, tip = Limb((0, -0.045, -0.05), (0, -0.05, BALL[2]), 0.035, 0.028), 0.026
+        parts.append(Part(f"foot.{side}", sole, SHOES))
+        parts.append(Part(f"toes.{side}", Ball((0, 0.02, 0.025), (0.042, tip, 0.05)), SHOES))
     return parts
 
 
@@ -117,6 +132,8 @@ def skin_of(tree: Tree) -> Skin | None:
 SKINS: tuple[tuple[Callable[[], Figure], Callable[[], list[Part]]], ...] = (
     (human, human_skin),
     (simulator, simulator_skin),
+    (lambda: floating(human()), floating_skin),
+    (walker, walker_skin),
 )
 
 
@@ -140,7 +157,8 @@ def _matched(tree: Tree, like: Tree, unit: float, base: Array) -> dict[str, str]
         offset = unit * like.offsets[j] + (base if parent == GROUND else 0)
         near = np.linalg.norm(tree.offsets - offset, axis=-1) <= 1e-3 * unit
         along = np.linalg.norm(tree.axes - like.axes[j], axis=-1) <= 1e-3
-        fit = np.flatnonzero((tree.parents == row[parent]) & near & along & ~tree.slide)
+        alike = tree.slide == like.slide[j]
+        fit = np.flatnonzero((tree.parents == row[parent]) & near & along & alike)
         if len(fit) != 1:
             return {}
         row[j] = int(fit[0])
@@ -175,8 +193,8 @@ def stick_skin(tree: Tree, effectors: Effectors, thick: float) -> list[Part]:
         if np.linalg.norm(tree.offsets[j] - start) > 1e-3 * thick:
             end = tree.offsets[j].tolist()
             parts.append(Part(parent, Limb(start.tolist(), end, thick, thick), SHIRT))
-    for joint, offset in zip(effectors.joints, effectors.offsets, strict=True):
-        if np.linalg.norm(offset) > 1e-3 * thick:
+    for joint, offset, w in zip(effectors.joints, effectors.offsets, effectors.w, strict=True):
+        if w and np.linalg.norm(offset) > 1e-3 * thick:
             limb = Limb(ORIGIN, offset.tolist(), thick, thick)
             parts.append(Part(tree.names[joint], limb, SHIRT))
     return parts

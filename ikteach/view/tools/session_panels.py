@@ -2,7 +2,6 @@
 
 import inspect
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from functools import partial
 from math import log10, pi, radians
 from typing import Any
@@ -14,7 +13,7 @@ from ikteach.markup import Markup, plain
 from ikteach.motion.gait import MOTIONS, WOUND, Gait, displayed
 from ikteach.motion.live.session import Session
 from ikteach.motion.mix import Mix
-from ikteach.motion.path import Path
+from ikteach.motion.path import Motion
 from ikteach.motion.rules import BUSS_CAPS, clip, hold, ignore, per_chain, whole
 from ikteach.names import unknown
 from ikteach.solvers import SOLVERS, Solver
@@ -304,7 +303,7 @@ def motions(session: Session) -> list[str]:
     return known if session.gait.name in known else [*known, session.gait.name]
 
 
-def other_motion(session: Session, name: str, first: Gait | Path) -> Gait | Path:
+def other_motion(session: Session, name: str, first: Motion) -> Motion:
     """Give the motion of that name, or the first one.
 
     The figure keeps its wounds and its way forward.
@@ -312,11 +311,11 @@ def other_motion(session: Session, name: str, first: Gait | Path) -> Gait | Path
     return as_set(MOTIONS[name] if name in MOTIONS and name != first.name else first, session)
 
 
-def as_set(motion: Gait | Path, session: Session) -> Gait | Path:
+def as_set(motion: Motion, session: Session) -> Motion:
     """Give a motion the wounds of the figure.
 
     It goes forward if the figure does.
     """
-    if isinstance(motion, Gait):
-        return replace(motion, forward=session.gait.forward, wound=session.gait.wound)
-    return replace(motion, wound=session.gait.wound)
+    if "forward" in motion.settings():
+        return motion.change(forward=session.gait.forward, wound=session.gait.wound)
+    return motion.change(wound=session.gait.wound)
