@@ -154,8 +154,7 @@ def lanes(folder: Path, full: bool) -> list[list[list[Part]]]:
         "servers, notebooks, widgets",
         [pytest("--numprocesses", "2", "--dist", "loadfile", *apart, nice=False)],
     )
-    javascript, install = [*NPM, "test"], [*NPM, "ci", "--no-audit", "--no-fund"]
-    page = Part("JavaScript", [javascript], {"PYTHON": sys.executable}, needs=[install])
+    page = Part("JavaScript", [[*NPM, "test"]], {"PYTHON": sys.executable})
     browsers = [Part("browser", [pytest("tests/browser", nice=False)])]
     engines = Part(
         "Firefox and WebKit",
