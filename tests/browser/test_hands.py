@@ -1,6 +1,5 @@
 """Every hand: what is run comes into view, a wheel scrolls, keys do all, readers hear of it."""
 
-import subprocess
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
