@@ -64,13 +64,13 @@ class Walk(NamedMotion):
     duty: float = 0.6
     lift: float = 0.085
     lift_at: float = 0.22
-    strike: float = 18.0
+    strike: float = 14.0
     push_off: float = -70.0
     reach: float = 0.24
     step_width: float = 0.10
     toe_out: float = 7.0
     height: float = 0.92
-    bob: float = 0.012
+    bob: float = 0.016
     bob_at: float = 0.31
     sway: float = 0.018
     surge: float = 0.008
@@ -248,7 +248,7 @@ slow = Walk(
     bob=0.007,
     tilt=9.5,
 )
-fast = Walk("fast", speed=1.5, cadence=126.0, reach=0.25)
+fast = Walk("fast", speed=1.5, cadence=126.0, reach=0.25, bob=0.012, strike=18.0)
 WALKS: Mapping[str, Walk] = {"slow": slow, "natural": natural, "fast": fast}  # as the norms are
 
 
