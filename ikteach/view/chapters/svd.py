@@ -2,7 +2,6 @@
 
 from typing import Any
 
-import ipywidgets as widgets
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -50,8 +49,8 @@ class SvdBench(Bench):
         else:
             controls["x"] = slider("Δθ₁, shoulder [rad]", 0.8, -STEPS, STEPS, 0.01)
             controls["y"] = slider("Δθ₂, elbow [rad]", 0.6, -STEPS, STEPS, 0.01)
-        planes = widgets.HBox([self.steps, self.places], layout={"flex_flow": "row wrap"})
-        super().__init__(self._show, controls, slot=slot, panel=[*controls.values(), planes])
+        planes = [self.steps, self.places]
+        super().__init__(self._show, controls, slot=slot, planes=planes)
         self.held.observe(lambda _: self._after(self._dragged), "at")
 
     def _dragged(self) -> None:
@@ -141,4 +140,4 @@ def _path(first: Array, to: Array) -> Line:
 
 
 def _pair(values: Array) -> str:
-    return "({:.2f}, {:.2f})".format(*(np.asarray(values) + 0.0))
+    return "({:.2f}, {:.2f})".format(*(np.asarray(values) + 0.0)).replace("-", "−")
