@@ -7,8 +7,8 @@ It also reads every message of a kernel twice, once to pass it on and once to kn
 uses the kernel, which is half of what a frame costs it. Of the second kind it is told here to take
 only what tells of cells: that they run, are done, print or show something.
 
-And a notebook whose kernel has ended is handed out with still pictures in place of its live
-figures, as `fallback` says.
+And a notebook whose kernel has ended, or was started anew, is handed out with still pictures in
+place of the figures that lived in it, as `fallback` says.
 
 `python -m ikteach` turns the extension on. Without it everything works, less smoothly.
 """
@@ -18,6 +18,7 @@ from typing import Any
 
 from ikteach.serve.fallback import without_dead_views
 
+ANSWER = 2.0  # [s] how long a kernel may take to say what lives in it: opening waits for it
 CELLS = b"kernel.", b"stream.", b"display_data"  # how topics begin; those of widgets with "comm-"
 
 
@@ -68,7 +69,7 @@ def watch_cells(server: Any) -> None:
 
 
 def show_stills(server: Any) -> None:
-    """Have notebooks without a kernel show still figures."""
+    """Have notebooks show stills of figures that no kernel holds."""
     contents, sessions = server.contents_manager, server.session_manager
     get = contents.get
     if not inspect.iscoroutinefunction(get):
@@ -77,9 +78,30 @@ def show_stills(server: Any) -> None:
     async def get_without_dead_views(path: str, *args: Any, **kwargs: Any) -> Any:
         model = await get(path, *args, **kwargs)
         if model["type"] == "notebook" and model["content"]:
-            living = {one["path"].strip("/") for one in await sessions.list_sessions()}
-            if path.strip("/") not in living:
-                without_dead_views(model["content"])
+            running = [
+                server.kernel_manager.get_kernel(one["kernel"]["id"])
+                for one in await sessions.list_sessions()
+                if one["path"].strip("/") == path.strip("/")
+            ]
+            living = await widgets_in(running[0]) if running else set()
+            if living is not None:
+                without_dead_views(model["content"], living)
         return model
 
     contents.get = get_without_dead_views
+
+
+async def widgets_in(kernel: Any) -> set[str] | None:
+    """Ask a kernel which widgets live in it.
+
+    None if it is too busy to say.
+    """
+    client = kernel.client()
+    client.start_channels(iopub=False, stdin=False, hb=False, control=False)
+    try:
+        said = await client.comm_info("jupyter.widget", reply=True, timeout=ANSWER)
+    except TimeoutError:
+        return None
+    finally:
+        client.stop_channels()
+    return set(said["content"].get("comms", ()))

@@ -1,12 +1,12 @@
 """What a notebook shows of its figures when it is opened and no kernel holds them any more.
 
 JupyterLab prefers the live view of an output to its picture, and says "model not found" where that
-view's kernel has ended. So a notebook without a kernel is handed out without those views: what the
-figure itself has left beside them, a still picture, stands there, and a sentence on what to run.
+view's kernel has ended or was started anew. So a notebook is handed out without such views: what
+the figure itself has left beside them, a still picture, stands there, and what to run.
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from typing import Any
 
 from ikteach.markup import Markup
@@ -22,17 +22,19 @@ STILL = AGAIN.format("This is as it stood when its cell was run; the kernel has 
 NOTHING = AGAIN.format("What stood here has ended with its kernel.")
 
 
-def without_dead_views(notebook: Mapping[str, Any]) -> None:
+def without_dead_views(notebook: Mapping[str, Any], living: Container[str] = ()) -> None:
     """Put stills in the place of a notebook's live views.
 
-    One that has kept the state of its widgets stays as it is.
+    living  the widgets that a kernel still has, by `model_id`: their views stay
+
+    A notebook that has kept the state of its widgets stays as it is.
     """
     if STATE in notebook.get("metadata", {}).get("widgets", {}):
         return
     for cell in notebook.get("cells", ()):
         for output in cell.get("outputs", ()):
             data = output.get("data", {})
-            if VIEW in data:
+            if VIEW in data and data[VIEW].get("model_id") not in living:
                 del data[VIEW]
                 data["text/html"] = _still("".join(data.get("text/html", "")))
                 data.pop("image/png", None)  # it is in the HTML, and would be shown instead of it

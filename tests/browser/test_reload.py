@@ -10,6 +10,11 @@ from tests.browser.test_chapters import CHAPTERS, ENDS, Chapter, by_keys, wait_f
 
 NAME = "reload.ipynb"  # a copy, for it is saved with its output
 WIDGETS = [".ikteach-question", ".jp-OutputArea .noUi-handle"]
+RESTART = """async () => {
+  const { session } = window.jupyterapp.shell.currentWidget.sessionContext;
+  await session.kernel.restart();
+  await session.kernel.info;
+}"""
 LOST = ["Error displaying widget", "Click to show javascript error", "Loading widget"]
 A_FIGURE, A_PICTURE = CHAPTERS[0], CHAPTERS[3]
 
@@ -36,3 +41,15 @@ def test_all_is_there_after_a_reload(open_notebook: Any, lab: Lab, chapter: Chap
     notebook.kernel("None", ENDS)
     by_keys(notebook, chapter.figure)
     assert notebook.errors == []
+    start_anew(notebook)
+
+
+def start_anew(notebook: Notebook) -> None:
+    """After a kernel was started anew, a page that is loaded shows stills, and what to run."""
+    page = notebook.page
+    page.evaluate(RESTART)
+    notebook.reload()
+    page.locator(".ikteach-still img").first.wait_for(timeout=READY)
+    assert page.locator(".jp-OutputArea p", has_text="Run All Cells").count() >= 1
+    for words in LOST:
+        assert not page.get_by_text(words).locator("visible=true").count(), words

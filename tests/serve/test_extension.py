@@ -35,7 +35,7 @@ class Sessions:
         self.paths = paths
 
     async def list_sessions(self) -> list[dict[str, Any]]:
-        return [{"path": path} for path in self.paths]
+        return [{"path": path, "kernel": {"id": "a kernel"}} for path in self.paths]
 
 
 def server(*, folder: Path = Path(), sessions: Sessions | None = None, **parts: Any) -> Any:
@@ -44,6 +44,30 @@ def server(*, folder: Path = Path(), sessions: Sessions | None = None, **parts: 
     return SimpleNamespace(
         contents_manager=contents, session_manager=sessions or Sessions(), **parts
     )
+
+
+class Kernels:
+    """One kernel with a client, and with these widgets; None: it is too busy to answer."""
+
+    def __init__(self, widgets: list[str] | None) -> None:
+        self.widgets, self.open = widgets, 0
+
+    def get_kernel(self, _: str) -> Any:
+        return self
+
+    def client(self) -> Any:
+        return self
+
+    def start_channels(self, **_: bool) -> None:
+        self.open += 1
+
+    def stop_channels(self) -> None:
+        self.open -= 1
+
+    async def comm_info(self, target: str, *, reply: bool, timeout: float) -> Any:
+        if self.widgets is None:
+            raise TimeoutError(f"{timeout} s")
+        return {"content": {"comms": {name: {"target_name": target} for name in self.widgets}}}
 
 
 async def activity() -> tuple[list[bytes], list[str]]:
@@ -137,12 +161,16 @@ def bundle(one: Any) -> dict[str, Any]:
     return {mime: text for mime, text in data.items() if mime != "image/png"}
 
 
-def opened(folder: Path, notebook: Any, *living: str) -> list[dict[str, Any]]:
+def opened(
+    folder: Path, notebook: Any, *living: str, widgets: list[str] | None = None
+) -> list[dict[str, Any]]:
     """What a page is given of its outputs, while the notebooks of these paths have kernels."""
     nbformat.write(notebook, folder / "a.ipynb")
-    one = server(folder=folder, sessions=Sessions(*living))
+    kernels = Kernels(widgets)
+    one = server(folder=folder, sessions=Sessions(*living), kernel_manager=kernels)
     show_stills(one)
     content = asyncio.run(one.contents_manager.get("a.ipynb"))["content"]
+    assert kernels.open == 0
     return [output["data"] for cell in content["cells"] for output in cell["outputs"]]
 
 
@@ -162,8 +190,17 @@ def test_without_a_kernel_a_notebook_shows_stills_and_says_what_to_run(tmp_path:
 
 def test_with_a_kernel_or_with_its_state_a_notebook_keeps_its_views(tmp_path: Path) -> None:
     notebook = saved({VIEW: {"model_id": "1"}, "text/html": "a still"})
-    (data,) = opened(tmp_path, notebook, "a.ipynb")
-    assert VIEW in data
+    for widgets in ["1", "2"], None:
+        (data,) = opened(tmp_path, notebook, "a.ipynb", widgets=widgets)
+        assert VIEW in data
     notebook.metadata.widgets = {STATE: {"state": {}}}
     (data,) = opened(tmp_path, notebook)
     assert data == {VIEW: {"model_id": "1"}, "text/html": "a still"}
+
+
+def test_a_kernel_that_was_started_anew_has_lost_its_views(tmp_path: Path) -> None:
+    first, second = {VIEW: {"model_id": "1"}}, {VIEW: {"model_id": "2"}}
+    old, new = opened(tmp_path, saved(first, second), "a.ipynb", widgets=["2"])
+    assert "Run All Cells" in old["text/html"]
+    assert VIEW not in old
+    assert VIEW in new

@@ -180,10 +180,8 @@ class TrialsPlayer(Live):
         self.controls = self.panel.controls
         self.rows.observe(self.guarded(lambda _: self._choose()), "chosen")
         self.children = [
-            self.panel.widget,
+            Arranged([self.scene.widget], [self.panel.widget, self.rows], wide=True),
             self.status,
-            self.scene.widget,
-            self.rows,
         ]
         self._fill()
 

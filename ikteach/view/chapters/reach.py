@@ -99,8 +99,8 @@ class Simulator(Live):
         self.controls = self.panel.controls
         self.choosing = self.controls["method"]
         self.watch(self.scene)
-        beside = [self.panel.widget, self.targets, self._table]
-        self.children = [Arranged([self.scene.widget], beside), self.status]
+        beside = [self.panel.widget, self.targets]
+        self.children = [Arranged([self.scene.widget], beside), self._table, self.status]
         self.report()
 
     @property

@@ -2,7 +2,6 @@
 
 from typing import Any
 
-import ipywidgets as widgets
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -17,7 +16,7 @@ from ikteach.view.live.bench import Bench, Shown
 from ikteach.view.live.panel import slider
 from ikteach.view.stage.colours import BLUE, GREY, ORANGE, PURPLE, RED, effector_colour
 from ikteach.view.widgets.picture import Still, png_of
-from ikteach.view.widgets.plane import Line, Plane
+from ikteach.view.widgets.plane import Plane, Stroke
 
 SHOULDER = np.radians(20)  # [rad] of the first link; it turns both ellipse and arm, no more
 STEPS, PLACES = 1.5, 2.6  # [rad], [m] from the middle of a plane to its edges
@@ -50,8 +49,8 @@ class SvdBench(Bench):
         else:
             controls["x"] = slider("Δθ₁, shoulder [rad]", 0.8, -STEPS, STEPS, 0.01)
             controls["y"] = slider("Δθ₂, elbow [rad]", 0.6, -STEPS, STEPS, 0.01)
-        planes = widgets.HBox([self.steps, self.places], layout={"flex_flow": "row wrap"})
-        super().__init__(self._show, controls, slot=slot, panel=[*controls.values(), planes])
+        planes = [self.steps, self.places]
+        super().__init__(self._show, controls, slot=slot, planes=planes)
         self.held.observe(lambda _: self._after(self._dragged), "at")
 
     def _dragged(self) -> None:
@@ -120,25 +119,25 @@ def _told(J: Array, seen: Image, bones: Array, dtheta: Array) -> Any:
     )
 
 
-def _circle(seen: Image) -> list[Line]:
+def _circle(seen: Image) -> list[Stroke]:
     v = [_arrow(seen.V[i], c, f"v{'₁₂'[i]}") for i, c in enumerate((BLUE, ORANGE))]
-    return [Line(seen.circle, GREY), *v]
+    return [Stroke(seen.circle, GREY), *v]
 
 
-def _ellipse(seen: Image, bones: Array) -> list[Line]:
+def _ellipse(seen: Image, bones: Array) -> list[Stroke]:
     ends = seen.sigma[:, None] * seen.U
     u = [_arrow(ends[i], c, f"σ{'₁₂'[i]}u{'₁₂'[i]}") for i, c in enumerate((BLUE, ORANGE))]
-    return [Line(bones, GREY, width=6), Line(seen.ellipse, GREY), *u]
+    return [Stroke(bones, GREY, width=6), Stroke(seen.ellipse, GREY), *u]
 
 
-def _arrow(to: Array, colour: str, name: str, **look: Any) -> Line:
-    return Line(np.array([[0.0, 0.0], to]), colour, name, arrow=True, **look)
+def _arrow(to: Array, colour: str, name: str, **look: Any) -> Stroke:
+    return Stroke(np.array([[0.0, 0.0], to]), colour, name, arrow=True, **look)
 
 
-def _path(first: Array, to: Array) -> Line:
+def _path(first: Array, to: Array) -> Stroke:
     """Go along the first direction, and from there to the end."""
-    return Line(np.array([[0.0, 0.0], first, to]), RED, dashes="2 4")
+    return Stroke(np.array([[0.0, 0.0], first, to]), RED, dashes="2 4")
 
 
 def _pair(values: Array) -> str:
-    return "({:.2f}, {:.2f})".format(*(np.asarray(values) + 0.0))
+    return "({:.2f}, {:.2f})".format(*(np.asarray(values) + 0.0)).replace("-", "−")

@@ -32,6 +32,7 @@ class Bench(Cell):
     buttons   {label: its action}; then the picture is made anew
     scene     a live scene that `show` moves; the picture is then a chart beside it
     panel     the controls as they are laid out; one under the other, if not given
+    planes    what stands side by side in place of the picture, and shrinks with its place
 
     The status tells of errors in `show` or in a button, and the bench stays. A subclass gives its
     parts, and overrides nothing.
@@ -46,6 +47,7 @@ class Bench(Cell):
         buttons: Mapping[str, Callable[[], None]] | None = None,
         scene: Scene | None = None,
         panel: Sequence[widgets.Widget] | None = None,
+        planes: Sequence[widgets.Widget] = (),
     ) -> None:
         controls = doors.named("controls", controls, _control)
         show, buttons = function("show", show), doors.named("buttons", buttons or {}, function)
@@ -65,7 +67,7 @@ class Bench(Cell):
         if buttons:
             rows.append(widgets.HBox(list(self.buttons.values())))
         self.refresh()
-        self.children = self._laid_out(rows)
+        self.children = self._laid_out(rows, planes)
 
     @property
     def values(self) -> dict[str, Any]:
@@ -110,12 +112,19 @@ class Bench(Cell):
         if new:  # a page that has just opened knows no pose
             self._after(None)
 
-    def _laid_out(self, rows: list[widgets.Widget]) -> list[widgets.Widget]:
+    def _laid_out(
+        self, rows: list[widgets.Widget], planes: Sequence[widgets.Widget]
+    ) -> list[widgets.Widget]:
         """All parts: the picture or the scene first, a chart beside the scene."""
         scene, below = self.scene, self._below
         chart = [self._picture] if self._picture.png else []
         if scene is None:
             assert self.note is not None
+            if planes:
+                side_by_side = widgets.HBox([*planes])
+                side_by_side.add_class("ikteach-planes")
+                seen = [side_by_side, self.note.widget]
+                return [Arranged(seen, [*rows, below], wide=True), self.status]
             return [Arranged([*chart, self.note.widget], [*rows, below], chart=True), self.status]
         scene.driver.on_page = self._seen
         scene.widget.add_class("ikteach-told")  # what its words say, `below` shows

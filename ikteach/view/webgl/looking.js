@@ -21,8 +21,8 @@ export class Looking {
   #stage;
   #model;
   #box;
-  /** @type {[number, number] | null} */
-  #before = null; // size of the picture, while it fills the screen
+  /** @type {{ size: [number, number], aspect: string } | null} */
+  #before = null; // of the picture, while it fills the screen
   #away = new AbortController();
   /** @type {(() => void)[]} */
   #stops = [];
@@ -37,7 +37,9 @@ export class Looking {
     this.#scene = scene;
     this.#stage = stage;
     this.#model = model;
-    this.#box = stage.closest(".ikteach-scene") ?? stage;
+    /** @type {HTMLElement | null} */
+    const box = stage.closest(".ikteach-scene");
+    this.#box = box ?? stage;
     stage.classList.add("ikteach-stage");
     if (!stage.hasAttribute("aria-label")) stage.setAttribute("aria-label", "Scene");
     set(stage, { ...OWN_KEYS, role: "application", tabindex: 0 });
@@ -122,12 +124,16 @@ export class Looking {
   #fit() {
     const full = document.fullscreenElement === this.#box;
     if (full) {
-      this.#before ??= this.#scene.size;
+      const { style } = this.#box;
+      this.#before ??= { size: this.#scene.size, aspect: style.getPropertyValue("--aspect") };
       const others = [...this.#box.children].filter((one) => !one.contains(this.#stage));
       const under = others.reduce((sum, { clientHeight }) => sum + clientHeight + GAP, 0);
-      this.#scene.resize(window.innerWidth, Math.max(window.innerHeight - under, LEAST));
+      const [width, height] = [window.innerWidth, Math.max(window.innerHeight - under, LEAST)];
+      style.setProperty("--aspect", `${width / height}`); // layout.css gives it its place
+      this.#scene.resize(width, height);
     } else if (this.#before) {
-      this.#scene.resize(...this.#before);
+      this.#box.style.setProperty("--aspect", this.#before.aspect);
+      this.#scene.resize(...this.#before.size);
       this.#before = null;
       bringIntoView(this.#box);
     }

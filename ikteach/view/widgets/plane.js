@@ -1,11 +1,12 @@
 // A plane with lines and arrows, and one point that is dragged, or moved by keys.
 
 import { clamp } from "./choosing.js";
-import { listen, OWN_KEYS, svg, take } from "./dom.js";
+import { connected, listen, OWN_KEYS, svg, take } from "./dom.js";
 import { guarded } from "./guarded.js";
 
 const SIZE = 320; // of a side, in units of the drawing
 const HEAD = 9; // of an arrow
+const ROW = 4; // by which names that meet are moved apart
 const FINE = 0.1; // of a key's step, with Shift
 /** @type {Record<string, number[]>} */
 const KEYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
@@ -35,6 +36,7 @@ function render({ model, el }) {
       ...shown.flatMap((/** @type {Line} */ one) => line(one, half)),
       ...named.flatMap(entry),
     );
+    spread([...lines.querySelectorAll("text")]);
     plane.setAttribute("aria-label", `${model.get("title")}. ${model.get("alt")}`);
     if (!held.now) place(knob, model.get("at"), half);
     knob.setAttribute("aria-valuetext", model.get("said"));
@@ -42,7 +44,13 @@ function render({ model, el }) {
   }
   draw();
   el.append(plane);
-  return listen(model, { change: draw });
+  let gone = false;
+  connected(el, () => gone).then(draw); // only then have names a size
+  const stop = listen(model, { change: draw });
+  return () => {
+    gone = true;
+    stop();
+  };
 }
 
 /**
@@ -116,6 +124,33 @@ function line({ points, colour, arrow, name, legend, ...look }, half) {
   const [x, y] = [end[0] + 14 * Math.cos(angle), end[1] + 14 * Math.sin(angle) + 4];
   const where = { x: clamp(x, 24, SIZE - 24), y: clamp(y, 28, SIZE - 6), "text-anchor": "middle" };
   return [...made, svg("text", { ...where, class: "ikteach-name" }, name)];
+}
+
+/**
+ * Move names down until none stands on another; those of the legend, the last, stay.
+ * @param {SVGTextElement[]} names
+ */
+function spread(names) {
+  /** @type {DOMRect[]} */
+  const taken = [];
+  for (const name of names.reverse()) {
+    const box = name.getBBox();
+    while (taken.some((one) => overlap(one, box))) box.y += ROW;
+    name.setAttribute("y", `${Number(name.getAttribute("y")) + box.y - name.getBBox().y}`);
+    taken.push(box);
+  }
+}
+
+/**
+ * Whether two boxes have a part in common.
+ * @param {DOMRect} a
+ * @param {DOMRect} b
+ */
+export function overlap(a, b) {
+  return (
+    Math.abs(2 * (a.x - b.x) + a.width - b.width) < a.width + b.width &&
+    Math.abs(2 * (a.y - b.y) + a.height - b.height) < a.height + b.height
+  );
 }
 
 /**

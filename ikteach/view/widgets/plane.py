@@ -14,7 +14,7 @@ from ikteach.view.widgets.page import script, style
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class Stroke:
     """A line through points (g, 2), or an arrow.
 
     name    stands at its end, or in the legend, where ends may come together
@@ -71,7 +71,7 @@ class Plane(Living, anywidget.AnyWidget):
     step = traitlets.Float(0.05).tag(sync=True)
     alt = traitlets.Unicode("").tag(sync=True)
 
-    def show(self, lines: Sequence[Line], alt: str) -> None:
+    def show(self, lines: Sequence[Stroke], alt: str) -> None:
         """Draw these lines, which `alt` puts into words."""
         self.drawn = list(lines)
         with self.hold_sync():

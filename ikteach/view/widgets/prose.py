@@ -25,7 +25,11 @@ class Prose(Living, widgets.HTML):  # type: ignore[misc]
 def table(frame: pd.DataFrame, decimals: str, *, kind: str = "ikteach-table") -> Markup:
     """Write a table as HTML, each number in the format `decimals`."""
     shown = frame.rename(index=_plain, columns=_plain).rename_axis(index=None, columns=None)
-    made = shown.to_html(float_format=decimals.format, na_rep="–", border=0, classes=kind)
+
+    def number(value: float) -> str:
+        return decimals.format(value).replace("-", "−")
+
+    made = shown.to_html(float_format=number, na_rep="–", border=0, classes=kind)
     return Markup(made.replace("<th></th>", "<td></td>"))  # a corner is the head of nothing
 
 

@@ -9,7 +9,7 @@ from ikteach.view.chapters.svd import SvdBench
 
 
 def pairs(words: str) -> list[np.ndarray]:
-    found = re.findall(r"\((-?[\d.]+), (-?[\d.]+)\)", words)
+    found = re.findall(r"\((-?[\d.]+), (-?[\d.]+)\)", words.replace("−", "-"))
     return [np.array(pair, dtype=float) for pair in found]
 
 
@@ -40,7 +40,7 @@ def test_every_control_to_both_ends(bench):
 def test_the_dragged_point_and_the_sliders_agree(bench):
     bench.held.at = [0.25, -0.5]  # as the page does
     assert (bench.controls["x"].value, bench.controls["y"].value) == (0.25, -0.5)
-    assert bench.held.said == "(0.25, -0.50)"
+    assert bench.held.said == "(0.25, −0.50)"
     bench.controls["x"].value = -0.1
     assert bench.held.at == [-0.1, -0.5]
     assert bench.status.wrong == ""
