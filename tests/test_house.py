@@ -45,6 +45,13 @@ def test_no_class_and_no_function_is_too_long(module):
             assert (lines := length(node)) <= most, f"{node.name} in {module} has {lines} lines"
 
 
+@pytest.mark.parametrize("module", MODULES, ids=str)
+def test_no_half_of_a_sentence_is_left_on_a_line_of_its_own(module):
+    for node in ast.walk(parsed(module)):
+        lost = isinstance(node, ast.Expr) and isinstance(node.value, ast.JoinedStr)
+        assert not lost, f"{module}:{node.lineno} makes a text that nobody gets"
+
+
 @pytest.mark.parametrize("module", OURS, ids=str)
 def test_a_docstring_begins_with_few_words(module):
     for node in ast.walk(parsed(module)):

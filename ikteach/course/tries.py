@@ -1,6 +1,6 @@
 """What to try with a live figure: sentences, each with a button that does it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +16,8 @@ Setting = Mapping[str, Any]
 def show_me(figure: Any, tries: Mapping[str, Setting]) -> "Tries":
     """Put a button beside each sentence that sets the figure so.
 
+    What other sentences set is put back to how it is now, so that any order shows the same.
+
     figure  a live one, of this or an earlier cell
     tries   {sentence: {name of a control: its value}}, in the order in which they are set; for a
             button the value is how often it is pressed, for a target where it goes [m]
@@ -25,7 +27,22 @@ def show_me(figure: Any, tries: Mapping[str, Setting]) -> "Tries":
 
     for setting in tries.values():
         known(figure, setting)
-    return Tries(figure, {sentence: partial(put, figure, tries[sentence]) for sentence in tries})
+    before = now(figure, {name for setting in tries.values() for name in setting})
+
+    def whole(setting: Setting) -> Setting:
+        return {name: before[name] for name in before if name not in setting} | dict(setting)
+
+    return Tries(figure, {words: partial(put, figure, whole(tries[words])) for words in tries})
+
+
+def now(figure: Any, names: Set[str]) -> Setting:
+    """Return the values of those controls and the places of those targets; buttons have none."""
+    of_figure, places = controls(figure), targets(figure)
+    values = {name: of_figure[name] for name in of_figure if name in names - {*places}}
+    before = {name: one.value for name, one in values.items() if not hasattr(one, "click")}
+    return before | {
+        name: figure.targets.positions[i].copy() for i, name in enumerate(places) if name in names
+    }
 
 
 def known(figure: Any, setting: Setting) -> None:

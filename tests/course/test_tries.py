@@ -53,14 +53,18 @@ def test_every_button_of_a_chapter_moves_its_figure(code: str) -> None:
     assert isinstance(call, ast.Call)
     figure = names[ast.unparse(call.args[0])]
     seen = [state(figure)]
-    for row in made.children[:-1]:
-        row.children[0].click()
+    buttons = [row.children[0] for row in made.children[:-1]]
+    for button in buttons:
+        button.click()
         assert made.status.wrong == ""
         assert made.status.said
         assert figure.status.wrong == ""
         seen.append(state(figure))
     assert len(set(seen)) >= len(seen) - 1  # the first may be how the figure starts
     assert len(seen) > 1
+    for button, first in zip(buttons[::-1], seen[:0:-1], strict=True):
+        button.click()
+        assert state(figure) == first, f"{button.description} shows something else after others"
     close_all(made, figure)
 
 

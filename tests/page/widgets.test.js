@@ -8,7 +8,7 @@ import { floats } from "../../ikteach/view/widgets/binary.js";
 import { nearest } from "../../ikteach/view/widgets/curve.js";
 import { projection, RADIUS } from "../../ikteach/view/widgets/globe.js";
 import { guarded } from "../../ikteach/view/widgets/guarded.js";
-import { onPlane, underPoint } from "../../ikteach/view/widgets/plane.js";
+import { apart, onPlane, underPoint } from "../../ikteach/view/widgets/plane.js";
 import { Element, Model } from "./page.js";
 
 test("numbers are read from a view that begins anywhere", () => {
@@ -98,6 +98,30 @@ test("an error in a callback is shown, and stops no other", async () => {
   assert.equal(el.children.length, 1);
   assert.match(el.children[0].children[0], /no such joint/);
   mock.restoreAll();
+});
+
+test("no name of a plane lies on another, and each stays in the picture", () => {
+  assert.deepEqual(
+    apart([
+      [50, 40],
+      [200, 40],
+    ]),
+    [
+      [50, 40],
+      [200, 40],
+    ],
+  );
+  for (const y of [28, 160, 314]) {
+    const rows = apart([
+      [50, y],
+      [52, y + 3],
+      [60, y - 5],
+      [50, y],
+    ]).map((place) => place[1]);
+    rows.sort((a, b) => a - b);
+    for (let i = 1; i < rows.length; i++) assert.ok(rows[i] - rows[i - 1] >= 16);
+    assert.ok(rows[0] >= 20 && rows[3] <= 320);
+  }
 });
 
 test("a point of a plane is found again under the pointer, and never beyond the edges", () => {

@@ -96,7 +96,7 @@ def reach(answer: Answer) -> None:
         why = (
             "within its reach"
             if near < d < far
-            else "reached just so"
+            else "on the edge of its reach"
             if can
             else "further than both links together"
             if d > far

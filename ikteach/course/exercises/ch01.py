@@ -14,7 +14,7 @@ COARSE = 2e-3  # what central differences with a coarse h may be wrong by, of th
     "01.column",
     returns=(3,),
     hints=[
-        "Which two directions is the path of a point that turns about an axis at right angles to?",
+        "A point turns about an axis. At right angles to which two directions does it move?",
         "It moves along v × (s − p): the axis first, then the arrow "
         "from the joint to the effector.",
         "`return np.cross(v, s - p)`",

@@ -99,11 +99,13 @@ def cap(answer: Answer) -> None:
         ours = chains == chains[i]
         was, now, right = numbers_apart(dtheta[i], done[i], wanted[i])
         peak = abs(dtheta[ours]).max()
-        where = f"With max_step {bound:g} and chains {chains.tolist()}, "
-        f"joint {i + 1} was to turn by {was}"
+        where = (
+            f"With max_step {bound:g} and chains {chains.tolist()}, "
+            f"joint {i + 1} was to turn by {was}"
+        )
         expect(
             abs(done).max() <= bound * (1 + 1e-4),
-            f"{where}: a joint turns further than max_step, by {abs(done).max():.5g}.",
+            f"{where}. Now a joint turns by {abs(done).max():.5g}, further than max_step.",
         )
         if abs(done[ours]).max() > 0:
             share = done[ours] * peak - dtheta[ours] * abs(done[ours]).max()

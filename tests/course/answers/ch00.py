@@ -28,7 +28,7 @@ WRONG = {
             lambda x, y, a, b: bool(a - b <= np.hypot(x, y) <= a + b),
             "in the hole",
         ),
-        (lambda x, y, a, b: bool(abs(a - b) < np.hypot(x, y) < a + b), "reached just so"),
+        (lambda x, y, a, b: bool(abs(a - b) < np.hypot(x, y) < a + b), "on the edge of its reach"),
         (lambda x, y, a, b: bool(abs(a - b) <= x + y <= a + b), "can reach"),
         (lambda x, y, a, b: bool(abs(a - b) <= x * x + y * y <= a + b), "can reach"),
         (lambda x, y, a, b: True, "cannot reach"),
