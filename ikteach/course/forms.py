@@ -53,7 +53,7 @@ def _name(value: Any) -> str:
     text = value if isinstance(value, str) else value.__name__  # a function has one
     if not isinstance(text, str):
         raise TypeError
-    return text.strip()
+    return str.strip(text)  # of a text, whatever class it has
 
 
 def _items(value: Any) -> list[Any]:

@@ -10,14 +10,16 @@ import time
 import warnings
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from ikteach.course.deadline import shielded
 
-# What is put back if an answer has put something else in its place.
+# What is put back if an answer has put something else in its place; and our own, but the figures.
 MODULES = (builtins, math, random, time, np, np.linalg, np.random)
+FIGURES = "ikteach.view"
 PRINTED = 10_000  # letters that a check may print
 
 
@@ -54,7 +56,7 @@ def restoring() -> Iterator[None]:
 
 
 class Unpatched:
-    """Restores names of `MODULES`, numpy's errors and warnings.
+    """Restores names of `MODULES` and ours, numpy's errors and warnings.
 
     So that whoever judges what the block has made finds `numpy` as it was.
     """
@@ -65,7 +67,7 @@ class Unpatched:
         self._inside.enter_context(np.errstate(all="ignore"))
         self._inside.enter_context(warnings.catch_warnings())
         warnings.simplefilter("ignore")
-        self._names = [(vars(module), dict(vars(module))) for module in MODULES]
+        self._names = [(vars(module), dict(vars(module))) for module in (*MODULES, *_ours())]
         if (shell := ipython()) is not None:
             shell.ask_exit = _leave  # exit() would end the kernel
 
@@ -84,6 +86,12 @@ def ipython() -> Any:
     """Return the IPython in which this runs, or None."""
     module = sys.modules.get("IPython")
     return module.get_ipython() if module is not None else None
+
+
+def _ours() -> list[ModuleType]:
+    """List the modules that judge, and those that a check compares with."""
+    names = [n for n in sys.modules if n.startswith("ikteach.") and not n.startswith(FIGURES)]
+    return [sys.modules[name] for name in names]
 
 
 def _leave() -> None:

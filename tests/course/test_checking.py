@@ -2,6 +2,7 @@
 
 import contextlib
 import hashlib
+import importlib
 import itertools
 import json
 import linecache
@@ -818,3 +819,38 @@ def test_megabytes_that_an_answer_prints_are_left_out(capsys: pytest.CaptureFixt
     for text in (out.partition("✓")[0], err):
         assert 10_000 <= len(text) < 10_100
         assert text.endswith("left out)\n")
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "other"),
+    [
+        ("ikteach.course.forms", "agree", lambda *_, **__: None),
+        ("ikteach.course.checking", "of_form", lambda *_: np.array([2.0, 4.0])),
+        ("ikteach.body", "forward", lambda *_: None),
+    ],
+)
+def test_what_an_answer_changes_of_ours_is_put_back(module: str, name: str, other: Any) -> None:
+    ours = importlib.import_module(module)
+    before = getattr(ours, name)
+
+    def patches(x: Any) -> Any:
+        setattr(ours, name, other)
+        return [9.0] * len(x)
+
+    assert "must be twice" in said("xx.double", patches)
+    assert getattr(ours, name) is before
+
+
+def test_a_text_of_another_class_is_a_text() -> None:
+    class Like(str):
+        __slots__ = ()
+
+        def __eq__(self, other: object) -> bool:
+            return True
+
+        __hash__ = str.__hash__
+
+        def strip(self, *_: Any) -> "Like":
+            return self
+
+    assert type(of_form(Like(" dls "), NAME, "It is")) is str

@@ -41,7 +41,7 @@ def hand(answer: Answer) -> None:
     )
     rng = np.random.default_rng(0)
     for _ in range(12):
-        theta, lengths = rng.uniform(-3, 3, 3).round(2), rng.uniform(0.2, 1.5, 3).round(2)
+        theta, lengths = rng.uniform(-7, 7, 3).round(2), rng.uniform(0.2, 4, 3).round(2)
         agree(
             answer(theta, lengths),
             hand_of(theta, lengths),
@@ -67,13 +67,14 @@ def places() -> list[tuple[float, float, float, float]]:
                 )
                 cases.append((float(x), float(y), float(a), float(b)))
     on = [(1.5, 0.0, 1.0, 0.5), (0.0, -1.5, 1.0, 0.5), (0.0, 0.5, 1.0, 0.5), (-0.5, 0.0, 0.5, 1.0)]
+    just = [(0.0, share * (a + b), a, b) for a, b in links[:4] for share in (0.99999, 1.00001)]
     middle = [
         (0.0, 0.0, 0.5, 0.5),
         (0.0, 0.0, 1.0, 0.5),
         (0.0, 0.05, 0.8, 0.8),
         (0.5, 0.5, 1.0, 0.6),
     ]
-    return [*middle, *on, *cases]
+    return [*middle, *on, *just, *cases]
 
 
 @exercise(

@@ -97,7 +97,7 @@ def classify(answer: Answer) -> None:
     turn = np.linalg.qr(np.random.default_rng(3).normal(size=(2, 2)))[0]
     for J, e, when in (*arms(), *drawn()):
         right, size = truth(J, e), np.linalg.norm(e)
-        seen = [("", J, e), (", 1e-4 of it", J, 1e-4 * e), (", 10 times", J, 10 * e)]
+        seen = [("", J, e), (", a thousandth of it", J, 1e-3 * e), (", 10 times", J, 10 * e)]
         if len(J) == 2:
             seen.append((", seen from other axes", turn @ J, turn @ e))
         for how, J_, e_ in seen:
@@ -128,7 +128,7 @@ def classify(answer: Answer) -> None:
 def bend(answer: Answer) -> None:
     """volume(a, b, bend): √det(JJᵀ) of two links [m] whose elbow is bent by so much [rad]."""
     rng = np.random.default_rng(5)
-    bends = [0.0, np.pi / 2, np.pi, -np.pi / 2, *rng.uniform(-np.pi, np.pi, 12)]
+    bends = [0.0, np.pi / 2, np.pi, -np.pi / 2, *rng.uniform(-2 * np.pi, 2 * np.pi, 16)]
     for angle in bends:
         a, b = rng.uniform(0.2, 2, 2).round(2)
         agree(

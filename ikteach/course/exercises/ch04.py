@@ -21,7 +21,7 @@ def ranked() -> Iterator[tuple[Array, int]]:
     yield lost, 2
     yield 1e-6 * lost, 2
     yield 1e-6 * rng.normal(size=(3, 7)), 3
-    yield np.diag([1.0, 3e-3, 1.0]) @ rng.normal(size=(3, 6)), 3
+    yield np.diag([1.0, 3e-4, 1.0]) @ rng.normal(size=(3, 6)), 3
     yield np.zeros((3, 4)), 0
 
 

@@ -98,7 +98,7 @@ def unit(answer: Answer) -> None:
         (0.1, 100.0, 1.0),
         (0.5, 1.0, 180 / np.pi),
         (0.3, 1.0, 1.0),
-        *rng.uniform(0.1, 5, (6, 3)),
+        *10.0 ** rng.uniform(-1, 1, (8, 3)),
     ]
     for J, e in problems():
         if not J.any():

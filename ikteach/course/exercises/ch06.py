@@ -78,7 +78,7 @@ def unclamped() -> Iterator[tuple[Array, float]]:
         for _ in range(4):
             phi = rng.uniform(-1, 1, n) * 10.0 ** rng.uniform(-2, 1)
             peak = float(abs(phi).max())
-            for share in (0.1, 0.9, 1.0, 1.1, 20.0):
+            for share in (0.1, 0.9, 0.99, 1.0, 1.01, 20.0):
                 yield phi, peak * share
     yield np.zeros(3), 0.1
     yield np.ones(3), 0.0

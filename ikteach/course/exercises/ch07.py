@@ -117,10 +117,10 @@ def goes_round(answer: Answer, both: Array) -> None:
     )
     order = np.random.default_rng(70).permutation(SAMPLES)
     agree(
-        answer(order / SAMPLES - 1.0),
+        answer(order / SAMPLES - 7.0),
         both[order],
-        "Where the foot is must follow from the phase alone: asked in another order, and a cycle "
-        "earlier, you say {found} m in place of {wanted}.",
+        "Where the foot is must follow from the phase alone: asked in another order, and seven "
+        "cycles earlier, you say {found} m in place of {wanted}.",
         size=0.1,
     )
 

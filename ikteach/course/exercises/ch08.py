@@ -18,12 +18,12 @@ LARGEST_CAP = np.pi  # [rad]
 
 
 def made_up(seed: int) -> pd.DataFrame:
-    """A small log with numbers at random, in which the methods' order depends on the seed."""
+    """A small log with numbers at random, in which the seed decides order and lengths."""
     rng = np.random.default_rng(seed)
     rows = [
         {"frame": t, "method": m, "effector": e, "error": rng.exponential() ** 2, "jitter": shake}
         for m in SOLVERS
-        for t, shake in enumerate(rng.exponential(rng.uniform(0.5, 2), 5))
+        for t, shake in enumerate(rng.exponential(rng.uniform(0.5, 2), rng.integers(3, 9)))
         for e in ("hand", "foot")
     ]
     return pd.DataFrame(rows)

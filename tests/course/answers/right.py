@@ -106,6 +106,16 @@ def classify_lstsq(J, e):
     return "partly lost" if left > 1e-7 else ("free", "near")[int(np.linalg.norm(x) > 10)]
 
 
+def classify_allclose(J, e):
+    """With numpy's own tolerances."""
+    x = np.linalg.pinv(J) @ e
+    if np.linalg.norm(J.T @ e) < 1e-9 * np.linalg.norm(J) * np.linalg.norm(e):
+        return "lost"
+    if not np.allclose(J @ x, e):
+        return "partly lost"
+    return "near" if np.linalg.norm(x) > 10 * np.linalg.norm(e) else "free"
+
+
 def volume_by_j(a, b, bend):
     J = np.array([[-b * np.sin(bend), -b * np.sin(bend)], [a + b * np.cos(bend), b * np.cos(bend)]])
     return np.sqrt(np.linalg.det(J @ J.T).clip(0))
@@ -153,6 +163,10 @@ def cap_in_place(dtheta, max_step, chains):
         ours = np.flatnonzero(chains == chain)
         done[ours] /= max(1, np.linalg.norm(done[ours], np.inf) / max_step)
     return done.astype(np.float32)
+
+
+def capped(turns, most):
+    return turns * min(1, most / max(turns.abs().max(), 1e-300))
 
 
 def damped_stacked(J, e, damping):
@@ -397,4 +411,17 @@ RIGHT = [
     ("10.null", lambda J, w: np.float32(np.eye(len(w)) - np.linalg.pinv(J) @ J) @ np.float32(w)),
     ("10.nod", nod_search),
     ("10.nod", nod_degrees),
+    (
+        "00.hand",
+        lambda t, a: np.cumsum(a * np.exp(1j * np.cumsum(t))).view(float).reshape(-1, 2)[-1],
+    ),
+    (
+        "00.reach",
+        lambda x, y, a, b: 2 * max(np.hypot(x, y), a, b) <= np.hypot(x, y) + a + b + 1e-12,
+    ),
+    ("02.classify", classify_allclose),
+    ("03.safe", lambda J, e: np.linalg.pinv((J @ J.T @ e)[:, None]) @ e * (J.T @ e)),
+    ("04.cap", lambda d, m, c: pd.Series(d).groupby(c).transform(capped, m)),
+    ("08.order", lambda table, most: dict.fromkeys(order_sorted(table, most)).keys()),
+    ("09.solver", lambda J, e: np.linalg.lstsq(J, e, rcond=0.05)[0]),
 ]

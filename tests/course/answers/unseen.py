@@ -124,6 +124,35 @@ def mean_error(log):
     return log.groupby("method", observed=True)["error"].mean()
 
 
+def path_two_cycles(phase):
+    """Comes round once either way, and not for ever."""
+    phase = np.where(phase >= 1, phase - 1, np.where(phase < 0, phase + 1, phase))
+    return np.where(((phase >= 0) & (phase < 1))[:, None], ch07.path(phase), 0)
+
+
+def cramer_unless(refused):
+    """Solves, and looks at the outcome."""
+
+    def cramer3(J, r):
+        x = np.linalg.solve(J, r)
+        if refused(J, x):
+            raise ValueError("no inverse")
+        return x
+
+    return cramer3
+
+
+def order_by(error, jitter):
+    """Another measure than the mean, of one of the two."""
+
+    def order(table, most):
+        groups = table.groupby("method", observed=True)
+        calm = jitter(groups["jitter"]) <= most
+        return error(groups["error"])[calm].sort_values().index
+
+    return order
+
+
 WALK = gait.walking(gait.walking.clock(40))
 SDLS = {"foot.l": "sdls", "foot.r": "sdls"}
 
@@ -270,4 +299,25 @@ UNSEEN = [
     ("10.nod", lambda y, z, eyes: np.clip(ch10.nod(y, z, eyes), -0.5, 1)),
     ("10.nod", lambda y, z, eyes: np.clip(ch10.nod(y, z, 0.15), *np.radians([-30, 60]))),
     ("01.column", lambda v, p, s: ch01.column(v, s, p)),
+    ("00.hand", lambda t, a: ch00.hand(np.clip(t, -np.pi, np.pi), a)),
+    ("00.hand", lambda t, a: ch00.hand(t, np.minimum(a, 1.5))),
+    ("00.reach", reach_within(1e-5)),
+    ("01.cramer", cramer_unless(lambda J, x: abs(x).max() > 1e10)),
+    ("01.cramer", cramer_unless(lambda J, x: np.linalg.cond(J) > 1e7)),
+    ("01.cramer", cramer_unless(lambda J, x: np.isclose(np.linalg.det(J), 0, atol=1e-20))),
+    ("02.bend", lambda a, b, bend: a * b * np.sin(abs(bend))),
+    ("02.bend", lambda a, b, bend: a * b * np.sin(bend) * (1 if bend > 0 else -1)),
+    ("04.projector", lambda J: np.eye(J.shape[1]) - np.linalg.pinv(J, rcond=1e-3) @ J),
+    ("05.unit", lambda d, m, r: d * m / r if r > 1 else d * m),
+    (
+        "06.clamp",
+        lambda phi, bound: ch06.clamp(phi, bound) if abs(phi).max() > 1.05 * bound else phi,
+    ),
+    ("07.path", path_two_cycles),
+    ("08.order", order_by(lambda g: g.sum(), lambda g: g.mean())),
+    ("08.order", order_by(lambda g: g.mean(), lambda g: g.sum() / g.size().iloc[0])),
+    (
+        "08.experiment",
+        lambda: (WALK, 0.1, lambda log: log.groupby("method")["error"].sum().idxmin()),
+    ),
 ]
