@@ -32,6 +32,7 @@ class Bench(Cell):
     buttons   {label: its action}; then the picture is made anew
     scene     a live scene that `show` moves; the picture is then a chart beside it
     panel     the controls as they are laid out; one under the other, if not given
+    drawn     what shows the values in place of a picture
 
     The status tells of errors in `show` or in a button, and the bench stays. A subclass gives its
     parts, and overrides nothing.
@@ -46,6 +47,7 @@ class Bench(Cell):
         buttons: Mapping[str, Callable[[], None]] | None = None,
         scene: Scene | None = None,
         panel: Sequence[widgets.Widget] | None = None,
+        drawn: Sequence[widgets.Widget] = (),
     ) -> None:
         controls = doors.named("controls", controls, _control)
         show, buttons = function("show", show), doors.named("buttons", buttons or {}, function)
@@ -65,7 +67,7 @@ class Bench(Cell):
         if buttons:
             rows.append(widgets.HBox(list(self.buttons.values())))
         self.refresh()
-        self.children = self._laid_out(rows)
+        self.children = self._laid_out([*drawn], rows)
 
     @property
     def values(self) -> dict[str, Any]:
@@ -110,13 +112,16 @@ class Bench(Cell):
         if new:  # a page that has just opened knows no pose
             self._after(None)
 
-    def _laid_out(self, rows: list[widgets.Widget]) -> list[widgets.Widget]:
+    def _laid_out(
+        self, drawn: list[widgets.Widget], rows: list[widgets.Widget]
+    ) -> list[widgets.Widget]:
         """All parts: the picture or the scene first, a chart beside the scene."""
         scene, below = self.scene, self._below
         chart = [self._picture] if self._picture.png else []
         if scene is None:
             assert self.note is not None
-            return [Arranged([*chart, self.note.widget], [*rows, below], chart=True), self.status]
+            seen = [*drawn, *chart, self.note.widget]
+            return [Arranged(seen, [*rows, below], chart=True), self.status]
         scene.driver.on_page = self._seen
         scene.widget.add_class("ikteach-told")  # what its words say, `below` shows
         return [Arranged([scene.widget], [*rows, *chart, below]), self.status]
