@@ -300,12 +300,13 @@ class Ledger:
     def _repr_html_(self) -> str:
         head = Markup('<th scope="col" style="text-align:left">{}</th>')
         cell = Markup('<td style="text-align:left">{}</td>')
-        rows = map(_ledger_row, self.frame.reset_index().to_dict("records"))
-        nothing = Markup()
-        body = [Markup("<tr>{}</tr>").format(nothing.join(map(cell.format, row))) for row in rows]
+        rows = [_ledger_row(row) for row in self.frame.reset_index().to_dict("records")]
+        columns = len(LEDGER) - (not self.frame["own settings"].any())  # the last one is empty
+        line, nothing = Markup("<tr>{}</tr>"), Markup()
+        body = [line.format(nothing.join(map(cell.format, row[:columns]))) for row in rows]
         return Markup(
             '<table class="ikteach-table"><thead><tr>{}</tr></thead><tbody>{}</tbody></table>'
-        ).format(nothing.join(map(head.format, LEDGER)), nothing.join(body))
+        ).format(nothing.join(map(head.format, LEDGER[:columns])), nothing.join(body))
 
 
 def _ledger_row(row: Mapping[Hashable, Any]) -> list[object]:
