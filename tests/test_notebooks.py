@@ -6,6 +6,7 @@ prediction is held against must not hang on those.
 
 import ast
 import asyncio
+import builtins
 import copy
 import json
 import os
@@ -115,6 +116,32 @@ def test_is_committed_clean_and_short(path: Path) -> None:
     assert max(len(cell.source.splitlines()) for cell in code) <= 10
     assert len(prose.split()) <= 1200
     assert not any("solution" in cell.metadata.get("tags", []) for cell in notebook.cells)
+
+
+def names(source: str, context: type[ast.expr_context]) -> set[str]:
+    """The names that a cell reads (ast.Load), or that it makes (ast.Store)."""
+    nodes = [*ast.walk(ast.parse(source))]
+    found = {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, context)}
+    if context is ast.Store:
+        found |= {n.name for n in nodes if isinstance(n, ast.FunctionDef | ast.ClassDef)}
+        found |= {n.arg for n in nodes if isinstance(n, ast.arg)}
+        found |= {
+            (alias.asname or alias.name).partition(".")[0]
+            for n in nodes
+            if isinstance(n, ast.Import | ast.ImportFrom)
+            for alias in n.names
+        }
+    return found
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_cell_and_a_solution_use_only_what_was_made_before(path: Path) -> None:
+    made = {*dir(builtins), "display"}
+    for cell in builds.with_solutions(nbformat.read(path, as_version=4)).cells:
+        if cell.cell_type == "code":
+            made |= names(cell.source, ast.Store)
+            missing = names(cell.source, ast.Load) - made
+            assert not missing, f"{cell.id} uses {missing}"
 
 
 def calls(path: Path, name: str) -> list[ast.Call]:

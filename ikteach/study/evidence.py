@@ -18,10 +18,11 @@ from ikteach.motion.rules import LimitRule
 from ikteach.solvers import SOLVERS, Solver, dls, sdls, transpose
 from ikteach.study.experiment import Round, arrivals, starts, step_times, turns
 from ikteach.study.runs import after
-from ikteach.study.trials import Trials, trials
+from ikteach.study.trials import Motion, Trials, trials
 
 IN_REACH = replace(gait.walking, name="in reach", x_hand=0.3)  # walking, and the hands arrive too
 MOTIONS = {**gait.MOTIONS, "in reach": IN_REACH}
+SMALL = replace(gait.walking, name="slow", speed=gait.walking.speed / 4)  # 1.4 cm in a frame
 LIMITS: Mapping[str, LimitRule] = {"hold": hold, "clip": clip}
 DAMPINGS = (0.05, 0.1, 0.2, 0.4, 0.8)  # λ [m/rad]
 RATE = 30  # frames per second
@@ -49,6 +50,7 @@ class Evidence(NamedTuple):
 
     runs        of `trials`, and own, with the thesis's own settings
     single      of `trials`, of one hand with one target
+    small       of `trials`, of a walk whose targets move by small increments
     reach       miss: how near any pose comes to a target [m]
     leaps       leap: how far a target moves in one frame [m]
     arrivals    steps, seconds until targets that can be met
@@ -63,6 +65,7 @@ class Evidence(NamedTuple):
     runs: pd.DataFrame
     own: pd.DataFrame
     single: pd.DataFrame
+    small: pd.DataFrame
     reach: pd.DataFrame
     leaps: pd.DataFrame
     arrivals: pd.DataFrame
@@ -84,7 +87,8 @@ def gather(ours: Trials, own: Trials) -> Evidence:
     return Evidence(
         runs=ours.table,
         own=own.table,
-        single=_single(tree),
+        single=_alone(tree, one_hand(tree), {"circle": CIRCLE}),
+        small=_alone(tree, effectors, {"slow": SMALL}, seconds=1 + SMALL.period),
         reach=_reach(tree, effectors),
         leaps=_leaps(),
         arrivals=_arrivals(tree, effectors, times),
@@ -105,17 +109,21 @@ def with_damping(dampings: Iterable[float] = DAMPINGS) -> list[tuple[str, float,
     ]
 
 
-def _single(tree: Tree) -> pd.DataFrame:
-    """Let one hand follow one target."""
+def one_hand(tree: Tree) -> Effectors:
+    """Take the right hand alone."""
     whole = human().effectors
     hand = whole.names.index("hand.r")
     joint = tree.names[whole.joints[hand]]
-    one = Effectors.of(tree, {"hand.r": (joint, whole.offsets[hand].tolist())})
-    found = trials(
-        tree, one, {"circle": CIRCLE}, starts=starts(tree, 5), limits=LIMITS, dampings=DAMPINGS,
-        caps={"equal": dict.fromkeys(SOLVERS, np.radians(30))},
-    )  # fmt: skip
-    return found.table
+    return Effectors.of(tree, {"hand.r": (joint, whole.offsets[hand].tolist())})
+
+
+def _alone(
+    tree: Tree, effectors: Effectors, motion: Mapping[str, Motion], **options: Any
+) -> pd.DataFrame:
+    """Run the methods on one motion, with equal caps."""
+    caps = {"equal": dict.fromkeys(SOLVERS, np.radians(30))}
+    same: dict[str, Any] = {"starts": starts(tree, 5), "limits": LIMITS, "dampings": DAMPINGS}
+    return trials(tree, effectors, motion, caps=caps, **same, **options).table
 
 
 def _reach(tree: Tree, effectors: Effectors, phases: int = 8) -> pd.DataFrame:

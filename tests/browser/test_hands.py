@@ -327,7 +327,7 @@ def test_the_workbench_by_keys_alone(bench: Notebook) -> None:
     bench.settle(targets, before)
     tab_to(bench, "View")
     keys.press("Enter")
-    tab_to(bench, "One iteration under a glass")
+    tab_to(bench, "One iteration, magnified")
     keys.press("Enter")
     tab_to(bench, "Stop the clock and look")
     keys.press("Enter")

@@ -1,4 +1,4 @@
-"""What the prose of chapters 3 to 6 and 8 says without computing it there."""
+"""What the prose of chapters 3 to 6, 8 and 10 says without computing it there."""
 
 from functools import partial
 from math import degrees, pi, radians
@@ -6,8 +6,9 @@ from math import degrees, pi, radians
 import numpy as np
 import pytest
 
-from ikteach import dls, figures, forward, gait, jacobian, pseudoinverse, track, transpose
+from ikteach import cramer, dls, figures, forward, gait, jacobian, pseudoinverse, track, transpose
 from ikteach.motion import BUSS_CAPS, clip, hold, per_chain, whole
+from ikteach.motion.reach import packages
 from ikteach.solvers import SOLVERS
 from ikteach.study.experiment import arrivals, nearby, starts
 
@@ -120,3 +121,13 @@ def test_06_and_08_constants():
     caps = {name: cap and round(degrees(cap)) for name, cap in BUSS_CAPS.items()}
     assert caps == {"transpose": 30, "pseudoinverse": 5, "dls": 45, "sdls": None}
     assert list(SOLVERS) == list(caps)
+
+
+def test_10_a_step_along_an_arm_grows_as_it_gets_straight_and_one_across_does_not():
+    body = packages.ReachingFigure()
+    poses = np.tile(body.tree.rest, (2, 1))
+    poses[:, body.tree.index("elbow.r")] = np.radians([0.1, 1.0])
+    J = packages.by_hand(body, poses, packages.PACKAGES[0])
+    ahead, up = (abs(cramer(J, np.array(e))).max(axis=-1) for e in ([0, 0, 0.05], [0, 0.05, 0]))
+    assert up[0] / up[1] == pytest.approx(10, rel=0.01)
+    assert ahead[0] / ahead[1] == pytest.approx(1, rel=0.01)

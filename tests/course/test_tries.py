@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import nbformat
+import numpy as np
 import pytest
 
 from ikteach import figures
@@ -41,6 +42,19 @@ def state(figure: Any) -> str:
     return f"{values} {targets} {getattr(figure, 'words', '')}"
 
 
+def off_the_grid(figure: Any, code: str) -> dict[str, float]:
+    """The sliders that a cell sets to what no page can show: there they take the nearest value."""
+    found = {}
+    for name, control in controls(figure).items():
+        if f'"{name}"' in code and getattr(control, "step", None):
+            value = control.value
+            value = np.log(value) / np.log(control.base) if hasattr(control, "base") else value
+            steps = (value - control.min) / control.step
+            if abs(steps - round(steps)) > 1e-6:
+                found[name] = control.value
+    return found
+
+
 @pytest.mark.parametrize("code", cells())
 def test_every_button_of_a_chapter_moves_its_figure(code: str) -> None:
     names: dict[str, Any] = {"display": lambda *shown: None}
@@ -59,6 +73,7 @@ def test_every_button_of_a_chapter_moves_its_figure(code: str) -> None:
         assert made.status.wrong == ""
         assert made.status.said
         assert figure.status.wrong == ""
+        assert off_the_grid(figure, code) == {}
         seen.append(state(figure))
     assert len(set(seen)) >= len(seen) - 1  # the first may be how the figure starts
     assert len(seen) > 1

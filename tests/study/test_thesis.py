@@ -57,7 +57,11 @@ def test_what_is_known_of_the_sentences(table):
         "walking: both leg targets reachable",
         "walking: the hands' targets never",
         "running: four targets unreachable",
-        "a capped pseudoinverse cannot follow",
+        "capped, it is “unable to effectively track”",
+        "pseudoinverse: “instability near singularities”",
+        "DLS “avoids many” of its problems near singular",
+        "the same, a step near a singular pose",
+        "the transpose uses “fewer computations”",
         "λ “must be chosen very carefully”",
     ):
         assert words[says] == "holds"
@@ -73,6 +77,8 @@ def test_what_is_known_of_the_sentences(table):
         assert words[says].startswith("does not hold")
     assert words["increments “small enough” to look smooth"] == "depends on the motion"
     assert words["“defined for all matrices”: Jᵀ(JJᵀ)⁻¹"] == "depends on the pose"
+    complexity = table["DLS, SDLS have “greater complexity” than the others"]
+    assert complexity["turned by"] == "pseudoinverse 0%, transpose 100%"
     near = table["transpose and pseudoinverse: problems near singular"]
     assert near["turned by"] == "pseudoinverse 100%, transpose 0%"
 

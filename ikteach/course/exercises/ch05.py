@@ -43,9 +43,8 @@ def svd(answer: Answer) -> None:
             agree(
                 dtheta,
                 wanted,
-                f"{about} your step is not the least of ‖e − JΔθ‖² + "
-                f"λ²‖Δθ‖²: it is {{found}}, where "
-                "{wanted} is wanted.",
+                f"{about} your step does not make ‖e − JΔθ‖² + λ²‖Δθ‖² least: it is "
+                "{found}, where {wanted} is wanted.",
                 size=1e-3 * longest,
             )
 

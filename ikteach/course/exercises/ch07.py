@@ -23,8 +23,8 @@ JUMP = 5e-4  # [m]; what is left of a jump when the samples become dense
     "07.pace",
     returns=(),
     hints=[
-        "How fast does z = A sin(ωT) change, and when is it at the given place?",
-        "ż = Aω cos(ωT), and cos² = 1 − sin² = 1 − (z/A)². A speed has no sign.",
+        "How fast does z = A sin(ωτ) change, and when is it at the given place?",
+        "ż = Aω cos(ωτ), and cos² = 1 − sin² = 1 − (z/A)². A speed has no sign.",
         "`return abs(omega) * np.sqrt(A**2 - z**2)`",
     ],
 )

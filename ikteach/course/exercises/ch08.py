@@ -85,7 +85,7 @@ def order(answer: Answer) -> None:
                 expect(not unknown, f"{unknown[:1]} is no method of the log: {told}.")
                 expect(
                     sorted(found) == sorted(wanted),
-                    f"The names must be those with no more jitter than that, {told}.",
+                    f"Name the methods with jitter of at most {most:.3f}, and no others: {told}.",
                 )
                 expect(
                     len(found) <= 2 or found != wanted[::-1],

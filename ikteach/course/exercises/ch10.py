@@ -14,7 +14,7 @@ LOW, HIGH = np.radians([-30.0, 60.0])
 
 
 def wishes() -> Iterator[tuple[Array, Array]]:
-    """J (3, d) of a hand of the simulator and a wish (d,); and others, some without full rank."""
+    """J (3, n) of a hand of the simulator and a wish (n,); and others, some without full rank."""
     body, rng = ReachingFigure(), np.random.default_rng(10)
     low, high = body.tree.lower[body.rows], body.tree.upper[body.rows]
     for side in "rlrlr":
@@ -37,7 +37,7 @@ def wishes() -> Iterator[tuple[Array, Array]]:
     ],
 )
 def null(answer: Answer) -> None:
-    """to_rest(J (3, d), wish (d,)) -> (d,) is what of the wish leaves the hand where it is."""
+    """to_rest(J (3, n), wish (n,)) -> (n,) is what of the wish leaves the hand where it is."""
     for J, wish in wishes():
         found = answer(J, wish)
         best = wish - np.linalg.pinv(J) @ J @ wish

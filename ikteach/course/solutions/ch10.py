@@ -5,7 +5,7 @@ import numpy as np
 
 # %% 10.null
 def to_rest(J, wish):
-    """The part of the wish (d,) that J (3, d) does not notice."""
+    """The part of the wish (n,) that J (3, n) does not notice."""
     return wish - np.linalg.pinv(J) @ J @ wish
 
 

@@ -35,7 +35,7 @@ from ikteach.view.widgets.table import Rows
 EQUAL, OWN = "equal caps", "each author's caps"
 CAP = (0.5, 180.0)  # from, to [degrees per step]
 CHOSEN = ("motion", "limits", "caps")  # the factors of an experiment that buttons choose
-LEDGER = ("in", "sentence", "compared by", "verdict", "number", "its own settings")
+LEDGER = ("section", "sentence", "compared by", "verdict", "number", "with the thesis's settings")
 SIGNS = {"holds": "✓", "does not": "✗", "depends": "≈"}  # of verdicts
 HEADER = ("method", "λ", "mean distance [cm]", "jitter [rad/s²]", "reversals [1/s]")
 
@@ -298,19 +298,22 @@ class Ledger:
     def _repr_html_(self) -> str:
         head = Markup('<th scope="col" style="text-align:left">{}</th>')
         cell = Markup('<td style="text-align:left">{}</td>')
-        rows = map(_ledger_row, self.frame.reset_index().to_dict("records"))
-        nothing = Markup()
-        body = [Markup("<tr>{}</tr>").format(nothing.join(map(cell.format, row))) for row in rows]
+        rows = [_ledger_row(row) for row in self.frame.reset_index().to_dict("records")]
+        columns = len(LEDGER) - (not self.frame["own settings"].any())  # the last one is empty
+        line, nothing = Markup("<tr>{}</tr>"), Markup()
+        body = [line.format(nothing.join(map(cell.format, row[:columns]))) for row in rows]
         return Markup(
             '<table class="ikteach-table"><thead><tr>{}</tr></thead><tbody>{}</tbody></table>'
-        ).format(nothing.join(map(head.format, LEDGER)), nothing.join(body))
+        ).format(nothing.join(map(head.format, LEDGER[:columns])), nothing.join(body))
 
 
 def _ledger_row(row: Mapping[Hashable, Any]) -> list[object]:
     """Write a sentence: its verdict with a sign, and what turns it."""
     turned = f": {row['turned by']}" if row["turned by"] else ""
     sign = next(sign for word, sign in SIGNS.items() if row["verdict"].startswith(word))
-    verdict = Markup("{} <b>{}</b>, in {} cells{}").format(sign, row["verdict"], row["in"], turned)
+    cells = "cell" if row["in"].endswith(" 1") else "cells"
+    told = Markup("{} <b>{}</b>, in {} {}{}")
+    verdict = told.format(sign, row["verdict"], row["in"], cells, turned)
     return [
         row["section"],
         row["says"],

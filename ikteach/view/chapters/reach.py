@@ -127,7 +127,7 @@ class Simulator(Live):
         session, narrow = self.session, {"width": "400px", "label_width": "150px"}
         cap = degrees(session.max_step) if session.max_step is not None else 45.0
         methods = choice("Method", list(session.ways), session.method, label_width="60px")
-        parts = slider("n, parts of the error", session.parts, 1, 30, 1, **narrow)
+        parts = slider("parts of the error", session.parts, 1, 30, 1, **narrow)
         caps = slider("largest step [° per tick]", cap, 1.0, 45.0, 1.0, **narrow)
         sides = ["plane"] if self.scene.stage.planar else list(CAMERAS)
         clock = {

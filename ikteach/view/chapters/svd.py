@@ -44,8 +44,8 @@ class SvdBench(Bench):
             "bend": slider("bend of the elbow [°]", 20 if self.methods else 60, -180, 180, 1)
         }
         if self.methods:
-            controls["x"] = slider("error e, x [m]", -0.15, -PLACES, PLACES, 0.05)
-            controls["y"] = slider("error e, y [m]", -0.1, -PLACES, PLACES, 0.05)
+            controls["x"] = slider("error e, x [m]", -0.15, -PLACES, PLACES, 0.01)
+            controls["y"] = slider("error e, y [m]", -0.1, -PLACES, PLACES, 0.01)
         else:
             controls["x"] = slider("Δθ₁, shoulder [rad]", 0.8, -STEPS, STEPS, 0.01)
             controls["y"] = slider("Δθ₂, elbow [rad]", 0.6, -STEPS, STEPS, 0.01)

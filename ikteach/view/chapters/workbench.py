@@ -67,7 +67,7 @@ class Workbench(Live):
                 widgets.VBox([self.recorder, self.keeper]),
                 self.glass,
             ],
-            titles=[*self.panels, "Recording", "One iteration under a glass"],
+            titles=[*self.panels, "Recording", "One iteration, magnified"],
             selected_index=0,
         )
         self._table, self._aside = Prose(), widgets.VBox()

@@ -1,4 +1,4 @@
-"""One iteration under a glass: the clock stops, and the next tick is shown in pages."""
+"""One iteration, magnified: the clock stops, and the next tick is shown in pages."""
 
 from collections.abc import Callable
 

@@ -14,9 +14,9 @@ def by(factor):
 WRONG = {
     "05.svd": [
         (by(lambda s, d: 1 / s), "longer than"),
-        (by(lambda s, d: s / (s**2 + d)), "not the least"),
+        (by(lambda s, d: s / (s**2 + d)), "does not make"),
         (by(lambda s, d: 1 / (s + d)), "longer than"),
-        (by(lambda s, d: s / (s**2 + 4 * d**2)), "not the least"),
+        (by(lambda s, d: s / (s**2 + 4 * d**2)), "does not make"),
         (lambda J, e, damping: dls(J, e, damping=0.5), "longer than"),
     ],
     "05.bound": [
