@@ -15,9 +15,10 @@ from ikteach.body.partials import by_differences
 from ikteach.formats.bvh import read_bvh, recorded_walk, write_bvh
 from ikteach.motion import gait
 from ikteach.motion.live.session import Session
+from ikteach.motion.paths import quality
 from ikteach.motion.paths.perform import imitate, perform
 from ikteach.motion.paths.retarget import CMU, markers, retarget
-from ikteach.motion.paths.walk import Walk
+from ikteach.motion.paths.walk import WALKS, Walk
 from ikteach.study import gait_report
 
 FEET = ("foot.l", "foot.r")
@@ -66,20 +67,14 @@ def retargeted():
 
 
 def walks():
-    """The natural walk at three speeds, and that of the thesis."""
-    speeds = {
-        "Slow": Walk(speed=0.95, cadence=100),
-        "Free": Walk(),
-        "Fast": Walk(speed=1.5, cadence=118),
-    }
-    for speed, walk in speeds.items():
+    """A walk at each speed of the norms, and that of the thesis."""
+    for speed, walk in zip(quality.SPEEDS, WALKS.values(), strict=True):
         runs = {name: perform(walk, WALKER, solver, cycles=4) for name, solver in METHODS.items()}
         runs["the norm itself"] = imitate(walk, WALKER, cycles=4, speed=speed)
         print(f"\n{walk.name}, {walk.speed} m/s, against the norm {speed!r} [m, degrees]")
         print(gait_report(runs, walk, speed=speed).round(4).to_string())
-    runs = {
-        name: perform(gait.walking, figures.human(), solver) for name, solver in METHODS.items()
-    }
+    human = figures.human()
+    runs = {name: perform(gait.walking, human, solver) for name, solver in METHODS.items()}
     print("\nthe thesis's walk")
     print(gait_report(runs, gait.walking).round(4).to_string())
 

@@ -142,7 +142,7 @@ def test_the_planar_model_has_at_most_three_links(links):
 def test_a_walker_has_30_rows_and_stands_on_bent_knees():
     tree, effectors = figures.walker()
     assert len(tree) == 30
-    assert len(effectors) == 9
+    assert len(effectors) == 7
     assert (tree.rest > tree.lower).all()
     human = figures.human().tree
     for name in human.names:  # a human's, but for what hangs from the pelvis and for the rest

@@ -25,7 +25,7 @@ from ikteach.motion.path import NamedMotion
 
 NAMES = ("pelvis", "heel.l", "ball.l", "heel.r", "ball.r", "pelvis.up", "pelvis.ahead")
 SIDES = (("l", 1, 0.0), ("r", -1, 0.5))  # name, where x is, cycles behind the left foot
-SAMPLES = 1000  # of the foot's tilt in a cycle
+SAMPLES = 1000  # of a cycle, in tables
 SMOOTH = 0.015  # standard deviation of what rounds its corners [cycles]
 FLAT = 0.5  # a foot that is tilted less lies on heel and ball [degrees]
 EASE = 0.2  # height of the ball at which toes no longer keep level [m]
@@ -64,13 +64,13 @@ class Walk(NamedMotion):
     duty: float = 0.6
     lift: float = 0.085
     lift_at: float = 0.22
-    strike: float = 18.0
+    strike: float = 14.0
     push_off: float = -70.0
     reach: float = 0.24
     step_width: float = 0.10
     toe_out: float = 7.0
     height: float = 0.92
-    bob: float = 0.012
+    bob: float = 0.016
     bob_at: float = 0.31
     sway: float = 0.018
     surge: float = 0.008
@@ -129,7 +129,17 @@ class Walk(NamedMotion):
 
         At phase 0 the left heel comes down.
         """
-        q = numbers("the phase", phase) / (2 * pi)
+        return around(targets_of(self), numbers("the phase", phase))
+
+    def wish(self, tree: Tree, phase: ArrayLike) -> Array:
+        """Return the pose (..., n) of trunk, arms and toes at phases (...) [rad].
+
+        No target asks for it. The other joints would be at rest.
+        """
+        return around(wishes_of(self, tree), numbers("the phase", phase))
+
+    def plan(self, q: Array) -> Array:
+        """Work out the targets (..., 7, 3) after q (...) cycles [m]."""
         p, R = self.pelvis(q)
         feet = [point for _, x, late in SIDES for point in self._foot((q - late) % 1, x)]
         up, ahead = GAZE * R[..., 1], GAZE * R[..., 2]
@@ -156,12 +166,8 @@ class Walk(NamedMotion):
         turn = turned("y", -self.turn * wave(q)) @ turned("z", self.drop * wave(q - 0.15))
         return np.stack(place, axis=-1), turn @ turned("x", np.full(q.shape, self.tilt))
 
-    def wish(self, tree: Tree, phase: ArrayLike) -> Array:
-        """Return the pose (..., n) of trunk, arms and toes at phases (...) [rad].
-
-        No target asks for it. The other joints would be at rest.
-        """
-        q = numbers("the phase", phase) / (2 * pi)
+    def posture(self, tree: Tree, q: Array) -> Array:
+        """Work out the pose (..., n) that is wished for after q (...) cycles [rad]."""
         degrees = {
             "spine.bend": np.full(q.shape, self.lean - self.tilt),
             "spine.twist": (self.turn + self.twist) * wave(q),
@@ -242,8 +248,31 @@ slow = Walk(
     bob=0.007,
     tilt=9.5,
 )
-fast = Walk("fast", speed=1.5, cadence=126.0, reach=0.25)
+fast = Walk("fast", speed=1.5, cadence=126.0, reach=0.25, bob=0.012, strike=18.0)
 WALKS: Mapping[str, Walk] = {"slow": slow, "natural": natural, "fast": fast}  # as the norms are
+
+
+@lru_cache(maxsize=32)
+def targets_of(walk: Walk) -> Array:
+    """Make a table of a walk's targets over a cycle, (SAMPLES + 1, 7, 3)."""
+    return frozen(walk.plan(np.arange(SAMPLES + 1) / SAMPLES))
+
+
+@lru_cache(maxsize=32)
+def wishes_of(walk: Walk, tree: Tree) -> Array:
+    """Make a table of a walk's wishes over a cycle, (SAMPLES + 1, n)."""
+    return frozen(walk.posture(tree, np.arange(SAMPLES + 1) / SAMPLES))
+
+
+def around(table: Array, phase: Array) -> Array:
+    """Read a table of a cycle (SAMPLES + 1, ...) at phases (...) [rad].
+
+    It is straight between its entries.
+    """
+    along = SAMPLES * (phase / (2 * pi) % 1)
+    i = np.minimum(along.astype(int), SAMPLES - 1)
+    share = (along - i).reshape(*along.shape, *[1] * (table.ndim - 1))
+    return np.asarray((1 - share) * table[i] + share * table[i + 1])
 
 
 def wave(q: ArrayLike) -> Array:
