@@ -36,6 +36,7 @@ FIGURES = {
     "08": ("from ikteach.view.chapters.comparison import Race as Made", "", SCENE),
     "09": ("from ikteach.view import Workbench as Made", "", SCENE),
     "10": ("from ikteach.view.chapters.reach import Simulator as Made", "", SCENE),
+    "11": ("from ikteach.view.chapters.beyond import WalksPlayer as Made", "", SCENE),
 }
 
 
@@ -169,7 +170,7 @@ def test_nothing_stands_on_anything_and_nothing_is_cut(figures: Notebook, made: 
     assert faults_at(figures.page, ".ikteach-figure", SIZES, made) == []
 
 
-@pytest.mark.parametrize("made", ["00", "02", "04", "07", "08", "09", "10"], indirect=True)
+@pytest.mark.parametrize("made", ["00", "02", "04", "07", "08", "09", "10", "11"], indirect=True)
 def test_picture_and_numbers_are_seen_together(figures: Notebook, made: str) -> None:
     """On a small laptop, with the list of files open: the picture, and beside it what acts."""
     page = figures.page
