@@ -2,7 +2,7 @@
 
 import inspect
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
@@ -143,10 +143,14 @@ def pose_of(tree: Tree, start: Any = None) -> Array:
 def usual_methods(tree: Tree, effectors: Effectors) -> dict[str, Solver]:
     """Return the four methods.
 
-    The λ of dls is in proportion to the body: a length per radian.
+    The λ of dls is in proportion to the body: a length per radian. A slide without limits, as a
+    free pelvis has three, says nothing of its size.
     """
     known = stature(tree, effectors)
-    size = known[0] if known else extent(tree, effectors).radius / extent(*human()).radius
+    endless = tree.slide & (np.isinf(tree.lower) | np.isinf(tree.upper))
+    lower, upper = (np.where(endless, tree.rest, end) for end in (tree.lower, tree.upper))
+    radius = extent(replace(tree, lower=lower, upper=upper), effectors).radius
+    size = known[0] if known else radius / extent(*human()).radius
     return {**SOLVERS, **({} if size == 1 else {"dls": partial(dls, damping=DAMPING * size)})}
 
 

@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ikteach.arrays import Array, Mask, frozen
+from ikteach.arrays import Array, ArrayLike, Mask, frozen
 from ikteach.body import Effectors, Tree, forward, locate
 from ikteach.body.figures import BALL, HAND, HEEL, TOE
-from ikteach.checks import shown
+from ikteach.checks import numbers, shown
 from ikteach.motion.path import Motion
 from ikteach.motion.track import Track
 
@@ -25,6 +25,7 @@ CURVES = ("hip", "knee", "ankle", "pelvis")
 ROWS = {"hip": "hip.bend.{}", "knee": "knee.{}", "ankle": "ankle.{}", "pelvis": "pelvis.x"}
 TOUCH = 0.005  # height below which a sole is on the ground [m]
 LOW = 0.01  # height below which a sole is near the ground [m]
+MARKS = 1000  # phases in a period at which a foot may come down
 FINER = 50  # times to a frame at which a foot may come down
 SHORTEST = 0.4  # time between two of them [s]
 
@@ -223,6 +224,52 @@ def deviations(speed: str = "Free") -> dict[str, Array]:
     return {name: frozen(table[f"schwartz2008_{speed}_{name}_sd"]) for name in CURVES}
 
 
+def sagittal(tree: Tree, theta: Array) -> dict[str, Array]:
+    """Return the sagittal angles of poses θ (..., n), {curve: (..., 2)} [degrees].
+
+    Of the left and of the right side. A body whose pelvis cannot tilt has 0 there. LookupError for
+    one without hips, knees or ankles by a human's names.
+    """
+    found = {}
+    for curve, row in ROWS.items():
+        still = curve == "pelvis" and row not in tree.names
+        sides = [] if still else [tree.index(row.format(side)) for side in "lr"]
+        found[curve] = np.degrees(theta[..., sides]) if sides else np.zeros((*theta.shape[:-1], 2))
+    return found
+
+
+def cycle(path: Motion, phase: ArrayLike) -> Array:
+    """Return how far each foot's cycle is at phases (...), (..., 2).
+
+    The share from where the left foot, or the right one, comes down to where it does so again.
+    ValueError for a motion that does not say when feet stand.
+    """
+    way = float(np.sign(path.rate))
+    here, around = way * numbers("the phase", phase), 2 * np.pi
+    shares: list[Array] = []
+    for side in "lr":
+        begins = _begins(path, side)
+        since = np.asarray((here[..., None] - begins) % around)
+        last = since.argmin(axis=-1)
+        long = (np.roll(begins, -1) - begins) % around
+        long = np.where(long > 0, long, around)[last]  # a foot that comes down once
+        shares.append(since.min(axis=-1) / long)
+    return np.stack(shares, axis=-1)
+
+
+def _begins(path: Motion, side: str) -> Array:
+    """Find the phases of one period at which a foot comes down, forwards in time [rad]."""
+    feet = [i for point in ("heel", "ball") for i in _columns(path, f"{point}.{side}")]
+    fine = np.linspace(0, 2 * np.pi, MARKS, endpoint=False)
+    down = np.atleast_1d(path.stands(np.sign(path.rate) * fine)[:, feet].any(axis=1))
+    found = fine[down & ~np.roll(down, 1)]
+    apart = SHORTEST * abs(path.rate)
+    found = found[np.diff(found, prepend=found[-1:] - 2 * np.pi) > apart]
+    if not len(found):
+        raise ValueError(f"{shown(path.name)} does not say when feet stand")
+    return np.asarray(found)
+
+
 def curves(run: Track, path: Motion) -> dict[str, Array]:
     """Return the sagittal angles of a run over its cycle, {curve: (2, 51)} [degrees].
 
@@ -230,14 +277,12 @@ def curves(run: Track, path: Motion) -> dict[str, Array]:
     down. A body whose pelvis cannot tilt has 0 there. ValueError without a whole stride.
     """
     found = {name: np.zeros((2, 51)) for name in CURVES}
+    moved = sagittal(run.tree, run.theta)
     for i, side in enumerate("lr"):
         begins = strikes(path, run.times, side)
         times = begins[:-1, None] + np.diff(begins)[:, None] * np.arange(51) / 50
-        for curve, row in ROWS.items():
-            name = row.format(side)
-            if curve != "pelvis" or name in run.tree.names:
-                angle = np.degrees(run.theta[:, run.tree.index(name)])
-                found[curve][i] = np.interp(times, run.times, angle).mean(axis=0)
+        for curve, angle in moved.items():
+            found[curve][i] = np.interp(times, run.times, angle[:, i]).mean(axis=0)
     return found
 
 

@@ -5,6 +5,7 @@ targets are a pose of our own body, all but where a joint of ours lacks a turn, 
 reached. Positions taken as they are cannot, for nobody's bones are as long as another's.
 """
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -19,6 +20,8 @@ from ikteach.names import unknown
 
 NEAR, SLOW = 0.03, 0.5  # a foot nearer to the ground [m] and slower over it [m/s] stands
 
+SIDES = {"left": ("left", "l"), "right": ("right", "r")}
+
 CMU: Mapping[str, str] = {  # rows of `figures.walker()`, and joints of the recorded walk
     "pelvis.z": "Hips",
     "spine.twist": "Spine1",
@@ -28,6 +31,42 @@ CMU: Mapping[str, str] = {  # rows of `figures.walker()`, and joints of the reco
     **{f"shoulder.turn.{s}": f"{side}Arm" for s, side in (("l", "Left"), ("r", "Right"))},
     **{f"elbow.{s}": f"{side}ForeArm" for s, side in (("l", "Left"), ("r", "Right"))},
 }
+
+
+# What programs call the joints, in small letters; the first that is there is taken.
+CALLED: Mapping[str, tuple[str, ...]] = {
+    "pelvis.z": ("hips", "pelvis", "hip", "root"),
+    "spine.twist": ("spine1", "chest", "spine2", "chest2", "thorax", "torso", "spine", "abdomen"),
+    "hip.turn": ("upleg", "thigh", "upperleg", "femur", "hip"),
+    "knee": ("leg", "shin", "knee", "lowleg", "lowerleg", "calf", "tibia"),
+    "foot": ("foot", "ankle"),
+    "shoulder.turn": ("arm", "uparm", "upperarm", "shldr", "humerus", "shoulder"),
+    "elbow": ("forearm", "elbow", "lowarm", "lowerarm", "radius"),
+}
+
+
+def bones_of(recording: Any) -> dict[str, str]:
+    """Find a walker's bones in a recording, by what programs call them.
+
+    {row of ours: joint of theirs}, for `retarget` to `figures.walker()`. Words like LeftUpLeg,
+    lThigh, thigh_l and mixamorig:LeftUpLeg are known. LookupError names what is not found.
+    """
+    joints = {name.rpartition(".")[0]: None for name in recording.tree.names}
+    # Without name space, signs, and zeros before numbers.
+    plain = {name: re.sub(r"[\W_]+0*", "", name.rpartition(":")[2]).lower() for name in joints}
+    called = {word: name for name, word in reversed(plain.items())}
+    bones = {}
+    for row, words in CALLED.items():
+        sides = {"": ("",)} if row in ("pelvis.z", "spine.twist") else SIDES
+        for side, marks in sides.items():
+            each = [f for word in words for m in marks for f in (m + word, word + m)]
+            found = next((called[one] for one in each if one in called), None)
+            if found is None:
+                what = f"{side} {words[0]}".strip()
+                known = ", ".join(joints)
+                raise LookupError(f"no joint of the recording is its {what}: {shown(known)}")
+            bones[f"{row}.{side[0]}" if side else row] = found
+    return bones
 
 
 def markers(tree: Tree) -> Effectors:

@@ -8,6 +8,7 @@ from ikteach import SOLVERS, figures, step
 from ikteach.formats.session import load, save
 from ikteach.motion import gait
 from ikteach.motion.live.session import Session
+from ikteach.motion.live.settings import DAMPING, usual_methods
 from ikteach.motion.path import Motion, Path
 from ikteach.motion.paths.recorded import Recorded, drawn
 from ikteach.motion.paths.walk import Walk
@@ -124,3 +125,11 @@ def test_other_data_are_another_motion_though_all_else_is_the_same():
     session.gait = two
     assert session.events[-1].what == {"motion": "drawn"}
     assert_allclose(session.targets, two.at(0.0))
+
+
+def test_a_free_pelvis_makes_a_human_no_larger():
+    """The λ of dls goes with the body's size, and slides without limits have none."""
+    human = figures.human()
+    for figure in figures.floating(human), WALKER:
+        damping = usual_methods(*figure)["dls"].keywords["damping"]
+        assert damping == pytest.approx(DAMPING, rel=0.2)

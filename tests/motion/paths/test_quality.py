@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from ikteach import Effectors, figures
+from ikteach.motion import gait
 from ikteach.motion.paths import quality
 from ikteach.motion.paths.perform import imitate, perform
 from ikteach.motion.paths.recorded import drawn
@@ -56,6 +57,29 @@ def test_the_norm_itself_scores_nearly_nothing_and_what_is_off_so_much():
     """Pelvic tilt is one angle for both sides, and the norm's halves differ by some tenths."""
     assert quality.gait_score(norm_itself(), WALK) < 0.3
     assert quality.gait_score(norm_itself(off=5.0), WALK) == pytest.approx(5, abs=0.1)
+
+
+def test_where_a_foot_is_in_its_cycle():
+    phases = np.array([0.0, 1.0, 7.0])
+    share = phases / (2 * pi) % 1
+    found = quality.cycle(WALK, phases)
+    assert_allclose(found, np.stack([share, (share + 0.5) % 1], axis=-1), atol=2e-3)
+    assert quality.cycle(WALK, 1.0).shape == (2,)
+    # The thesis's feet come down where they are foremost, each half a cycle after the other.
+    left, right = quality.cycle(gait.walking, 3 * pi / 2 + 0.01)
+    assert left == pytest.approx(0, abs=5e-3)
+    assert right == pytest.approx(0.5, abs=5e-3)
+    with pytest.raises(ValueError, match="does not say when feet stand"):
+        quality.cycle(drawn([[0, 0, 0], [1, 0, 0]], 1, figure=figures.walker()), 0.0)
+
+
+def test_angles_are_those_of_the_pose_on_both_sides():
+    theta = np.zeros((3, len(TREE)))
+    theta[:, TREE.index("knee.r")], theta[:, TREE.index("pelvis.x")] = 1, 0.1
+    found = quality.sagittal(TREE, theta)
+    assert_allclose(found["knee"], np.degrees([[0, 1]] * 3))
+    assert_allclose(found["pelvis"], np.degrees(0.1))
+    assert_allclose(quality.sagittal(figures.human().tree, np.zeros(20))["pelvis"], [0, 0])
 
 
 def test_a_score_of_nothing_says_nothing_of_the_feet():

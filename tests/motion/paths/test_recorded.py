@@ -1,5 +1,6 @@
 """Recordings and drawings as motions, and a recorded walk on another body."""
 
+import re
 from dataclasses import replace
 from math import pi
 
@@ -14,7 +15,7 @@ from ikteach.formats.bvh import recorded_walk
 from ikteach.motion.paths import quality
 from ikteach.motion.paths.perform import perform
 from ikteach.motion.paths.recorded import Recorded, drawn
-from ikteach.motion.paths.retarget import CMU, between, markers, retarget
+from ikteach.motion.paths.retarget import CMU, between, bones_of, markers, retarget
 
 ARM = figures.planar_arm(3)
 TREE = figures.walker().tree
@@ -179,6 +180,79 @@ def test_bones_that_do_not_fit_are_named(bones, feet, error, words):
     figure = figures.Figure(TREE, markers(TREE))
     with pytest.raises(error, match=words):
         retarget(recorded_walk(), figure, bones, feet=feet)
+
+
+DIALECTS = {
+    "CMU": lambda name: name,
+    "Mixamo": lambda name: f"mixamorig:{name}",
+    "Poser": lambda name: {
+        "Hips": "hip",
+        "Spine1": "chest",
+        "UpLeg": "Thigh",
+        "Leg": "Shin",
+        "Arm": "Shldr",
+    }.get(re.sub("Left|Right", "", name), re.sub("Left|Right", "", name)),
+    "Xsens": lambda name: {
+        "Spine1": "Chest",
+        "LeftUpLeg": "LeftHip",
+        "RightUpLeg": "RightHip",
+        "LeftLeg": "LeftKnee",
+        "RightLeg": "RightKnee",
+        "LeftFoot": "LeftAnkle",
+        "RightFoot": "RightAnkle",
+        "LeftShoulder": "LeftCollar",
+        "RightShoulder": "RightCollar",
+        "LeftArm": "LeftShoulder",
+        "RightArm": "RightShoulder",
+        "LeftForeArm": "LeftElbow",
+        "RightForeArm": "RightElbow",
+    }.get(name, name),
+    "Unreal": lambda name: {
+        "Hips": "pelvis",
+        "Spine1": "spine_01",
+        "LeftUpLeg": "thigh_l",
+        "RightUpLeg": "thigh_r",
+        "LeftLeg": "calf_l",
+        "RightLeg": "calf_r",
+        "LeftFoot": "foot_l",
+        "RightFoot": "foot_r",
+        "LeftArm": "upperarm_l",
+        "RightArm": "upperarm_r",
+        "LeftForeArm": "lowerarm_l",
+        "RightForeArm": "lowerarm_r",
+    }.get(name, name),
+}
+
+
+def renamed(recording, dialect):
+    """The recording, its joints called as another program calls them."""
+
+    def called(row):
+        joint, _, channel = row.rpartition(".")
+        side = {"L": "l", "R": "r"}.get(joint[:1], "") if dialect == "Poser" else ""
+        side = side if joint.startswith(("Left", "Right")) else ""
+        return f"{side}{DIALECTS[dialect](joint)}.{channel}"
+
+    names = tuple(map(called, recording.tree.names))
+    return recording._replace(tree=replace(recording.tree, names=names))
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_bones_are_found_by_what_programs_call_them(dialect):
+    figure, path = walk_of()
+    other = renamed(recorded_walk(), dialect)
+    bones = bones_of(other)
+    if dialect == "CMU":
+        assert bones == dict(CMU)
+    again = retarget(other, figure, bones, feet=FEET)
+    assert_allclose(again.targets, path.targets, atol=1e-9)
+
+
+def test_a_bone_that_is_not_there_is_named():
+    other = renamed(recorded_walk(), "CMU")
+    names = tuple(name.replace("LeftForeArm", "Wing") for name in other.tree.names)
+    with pytest.raises(LookupError, match="no joint of the recording is its left forearm"):
+        bones_of(other._replace(tree=replace(other.tree, names=names)))
 
 
 VECTORS = st.lists(st.floats(-1, 1), min_size=3, max_size=3)
