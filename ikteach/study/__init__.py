@@ -6,6 +6,7 @@ sessions    ticks, poses and events of a live figure
 directions  one step by singular directions (chapter 6)
 reach       the simulator of chapter 10
 gaits       how natural a run is (chapter 11)
+walks       three walks of one body, to be compared (chapter 11)
 experiment  runs made to be compared, starts, counts and times
 trials      the fair experiment of chapter 8
 verdicts    rules by which its table says whether a sentence holds

@@ -4,6 +4,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from ikteach.view.chapters.beyond import WalksPlayer
     from ikteach.view.chapters.figure import Poser
     from ikteach.view.chapters.gait import GaitPlayer
     from ikteach.view.chapters.jacobian import ColumnPoser
@@ -23,6 +24,7 @@ _HOMES = {
     "Simulator": "chapters.reach",
     "StillScene": "raster.still",
     "SvdBench": "chapters.svd",
+    "WalksPlayer": "chapters.beyond",
     "Workbench": "chapters.workbench",
 }
 
@@ -35,6 +37,7 @@ __all__ = [
     "Simulator",
     "StillScene",
     "SvdBench",
+    "WalksPlayer",
     "Workbench",
 ]
 

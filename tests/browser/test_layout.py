@@ -43,8 +43,9 @@ FIGURES = {
         "['pseudoinverse', 'dls']",
         PLANES,
     ),
+    "11": ("from ikteach.view.chapters.beyond import WalksPlayer as Made", "", SCENE),
 }
-BESIDE = ["00", "02", "04", "07", "08", "09", "10", "svd"]  # controls stand beside the picture
+BESIDE = ["00", "02", "04", "07", "08", "09", "10", "11", "svd"]  # controls stand beside the picture
 
 
 class Size(NamedTuple):

@@ -176,6 +176,20 @@ def nod(rng: Random) -> Any:
     return far * np.sin(way), far * np.cos(way), eyes
 
 
+def turn(rng: Random) -> Any:
+    order = "".join(rng.permutation(list("XYZ"))[: rng.integers(1, 4)])
+    return order, rng.uniform(-180, 180, len(order)).tolist()
+
+
+def stands(rng: Random) -> Any:
+    return rng.uniform(-4, 4, 50), float(rng.uniform(0.1, 0.95)), float(rng.uniform(-2, 2))
+
+
+def score(rng: Random) -> Any:
+    c, s = rng.integers(1, 5, 2)
+    return rng.normal(0, 30, (c, s, 51)), rng.normal(0, 30, (c, 51))
+
+
 DRAWS = {
     "00.hand": hand,
     "00.reach": reach,
@@ -199,6 +213,9 @@ DRAWS = {
     "09.solver": solver,
     "10.null": null,
     "10.nod": nod,
+    "11.turn": turn,
+    "11.stands": stands,
+    "11.score": score,
 }
 
 

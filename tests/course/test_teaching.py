@@ -15,7 +15,15 @@ from ikteach.motion import BUSS_CAPS
 from ikteach.publish.collect import collect
 from ikteach.study import distances
 from ikteach.study.experiment import nearby
-from ikteach.view import BendBench, ColumnPoser, GaitPlayer, Poser, Simulator, Workbench
+from ikteach.view import (
+    BendBench,
+    ColumnPoser,
+    GaitPlayer,
+    Poser,
+    Simulator,
+    WalksPlayer,
+    Workbench,
+)
 from ikteach.view.chapters.comparison import EQUAL, OWN, Race
 from ikteach.view.chapters.dls import tradeoff_bench
 from ikteach.view.chapters.pseudoinverse import CapPlayer
@@ -65,7 +73,7 @@ def shaken(*caps: float | None) -> list[np.ndarray]:
 
 def test_there_is_a_row_for_each_chapter() -> None:
     _, _, chapters = TEXT.partition("## Chapter by chapter")
-    assert re.findall(r"^\| (\d+) \|", chapters, re.MULTILINE) == [str(n) for n in range(11)]
+    assert re.findall(r"^\| (\d+) \|", chapters, re.MULTILINE) == [str(n) for n in range(12)]
 
 
 def test_what_students_are_told_to_write_is_collected(
@@ -221,3 +229,40 @@ def test_10_the_hand_never_comes_to_rest_unless_mended() -> None:
     middle = after(0.0, 0.25, 0.35)
     assert "does not answer" in middle["cramer"]
     assert middle["dls"].startswith("arrived")
+
+
+def test_11_targets_are_met_and_the_knees_are_wrong() -> None:
+    player = WalksPlayer()
+    recorded = player.session.sessions["recorded"]
+
+    def far(ticks: int = 90) -> dict[str, float]:
+        """Mean distance of each effector of the recorded walk, once it has settled [m]."""
+        errors = []
+        for tick in range(2 * ticks):
+            player.session.tick()
+            errors += [recorded.error] if tick >= ticks else []
+        return dict(zip(recorded.effectors.names, np.mean(errors, axis=0), strict=True))
+
+    asked = {"pelvis": False, "knees": False, "elbows": False}
+    limbs = ("ball.l", "ball.r", "hand.l", "hand.r")
+    put(player, method="dls", **asked)
+    few = far()
+    assert max(few[name] for name in limbs) < 0.01
+    assert min(few["knee.l"], few["knee.r"]) > 0.05
+    put(player, **dict.fromkeys(asked, True))
+    assert max(far().values()) < 0.02
+
+    def measured() -> pd.Series:
+        said = player._table.value
+        heads = re.findall(r"<th>([^<]+)</th>", said.partition("<tbody>")[0])
+        row = said.partition("natural</th>")[2].partition("</tr>")[0]
+        return pd.Series(map(float, re.findall(r"<td>([^<]+)</td>", row)), heads)
+
+    player.report()
+    assert measured()["clearance"] > 1.5
+    put(player, lift=0)
+    far()
+    player.report()
+    assert measured()["clearance"] < 0.5
+    assert measured()["score"] < 8
+    player.close()

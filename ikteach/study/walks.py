@@ -1,0 +1,225 @@
+"""Chapter 11: three walks of one body, recorded, the thesis's, and a natural one."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from ikteach.arrays import Array, ArrayLike
+from ikteach.body import Effectors, Tree, forward
+from ikteach.body.figures import BALL, GAZE, HAND, HEEL, Figure, walker
+from ikteach.motion import gait
+from ikteach.motion.live.session import Session
+from ikteach.motion.path import Motion
+from ikteach.motion.paths import quality
+from ikteach.motion.paths.perform import imitate, perform
+from ikteach.motion.paths.recorded import Recorded
+from ikteach.motion.paths.retarget import CMU, retarget
+from ikteach.motion.paths.walk import natural
+from ikteach.motion.track import Track
+from ikteach.study.gaits import gait_report
+
+FEET = ("foot.l", "foot.r")  # rows of a walker that lie flat in both zero poses
+BALLS = dict(zip(gait.walking.names, ("ball.l", "ball.r", "hand.r", "hand.l"), strict=True))
+FRAMES = 240  # of a cycle of the thesis's walk
+LOW_SHARE, ROUNDS = 0.4, 5  # of the frames that tell where the ground is; of the search for them
+NEAR_GROUND = 0.03  # a point that is lower may stand [m]
+FINE = 1 / 30  # time between two places at which a foot is looked for [s]
+
+
+def limbs(tree: Tree, names: Sequence[str] | None = None) -> Effectors:
+    """Return effectors of a walker by their names, or all 13.
+
+    The pelvis and two of its directions; heel and ball of each foot, knees, elbows, hands.
+    """
+    points: dict[str, tuple[str, Sequence[float]]] = {"pelvis": ("pelvis.z", (0, 0, 0))}
+    for side in "lr":
+        foot, elbow = f"foot.{side}", f"elbow.{side}"
+        points |= {f"heel.{side}": (foot, HEEL), f"ball.{side}": (foot, BALL)}
+        points |= {f"knee.{side}": (f"knee.{side}", (0, 0, 0)), elbow: (elbow, (0, 0, 0))}
+        points[f"hand.{side}"] = (elbow, HAND)
+    up, ahead = ("pelvis.z", (0, GAZE, 0)), ("pelvis.z", (0, 0, GAZE))
+    directions = {"pelvis.up": up, "pelvis.ahead": ahead}
+    if names is not None:
+        points = {name: at for name, at in points.items() if name in names}
+        directions = {name: at for name, at in directions.items() if name in names}
+    return Effectors.of(tree, points, directions=directions)
+
+
+def three_walks(recording: Any) -> dict[str, tuple[Figure, Motion]]:
+    """Make {"recorded", "thesis", "natural": (figure, motion)}.
+
+    recording  a walk, as `formats.bvh.recorded_walk` gives it
+
+    All have the tree of `figures.walker()`, each the effectors that its targets ask for. Of the
+    thesis's human the pelvis is the ground: those rows are stiff, and so are the feet.
+    """
+    tree, walk = walker().tree, gait.walking
+    thirteen = Figure(tree, limbs(tree))
+    recorded = levelled(retarget(recording, thirteen, CMU, feet=FEET))
+    times = walk.period * np.arange(FRAMES) / FRAMES
+    course = walk.on(*Figure(tree, _as_thesis(tree)))
+    targets = np.array([course.at(walk.rate * t) for t in times])
+    stiff = [row for row in tree.names if row.startswith(("pelvis", "foot", "toes"))]
+    thesis = Recorded(
+        times,
+        targets,
+        tuple(BALLS[name] for name in walk.names),
+        name="thesis",
+        standing=walk.stands(walk.rate * times),
+        floor=course.floor,
+        speed=walk.pace,
+        wound=dict.fromkeys(stiff, 0.0),
+    )
+    four = Figure(tree, limbs(tree, thesis.names))
+    return {
+        "recorded": (thirteen, recorded),
+        "thesis": (four, thesis),
+        "natural": (walker(), natural),
+    }
+
+
+def levelled(walk: Recorded) -> Recorded:
+    """Take whole strides of a recorded walk, on level ground.
+
+    The first frame of many files is no part of the motion but a pose to measure the body by. The
+    ground is where the lower foot is, a line in time. A heel or ball stands while it goes back as
+    the body has it (Zeni, Richards & Higginson 2008, Gait & Posture 27:710) and is low. From where
+    the left foot comes down to where it comes down again, the motion can begin anew without a leap.
+    ValueError if it does so less than twice.
+    """
+    times, targets = walk.times[1:], walk.targets[1:].copy()
+    feet = [i for i, name in enumerate(walk.names) if name.startswith(("heel", "ball"))]
+    points = [i for i, name in enumerate(walk.names) if not name.startswith("pelvis.")]
+    lowest = targets[:, feet, 1].min(axis=1)
+    slope = start = 0.0
+    for _ in range(ROUNDS):  # the points that are lowest over the line, which they then make
+        over = lowest - (slope * times + start)
+        near = over < np.quantile(over, LOW_SHARE)
+        slope, start = np.polyfit(times[near], lowest[near], 1)
+    targets[:, points, 1] -= (slope * times + start - walk.floor)[:, None]
+    low = targets[:, feet, 1] < walk.floor + NEAR_GROUND
+    standing = np.zeros(targets.shape[:2], dtype=bool)
+    standing[:, feet] = low & (np.gradient(targets[:, feet, 2], times, axis=0) < 0)
+    left = [i for i in feet if walk.names[i].endswith(".l")]
+    down = np.atleast_1d(standing[:, left].any(axis=1))
+    begins = np.flatnonzero(down[1:] & ~down[:-1]) + 1
+    if len(begins) < 2:
+        raise ValueError("the recording has no whole stride of the left foot")
+    whole = slice(begins[0], begins[-1])
+    return replace(walk, times=times[whole], targets=targets[whole], standing=standing[whole])
+
+
+def _as_thesis(tree: Tree) -> Effectors:
+    """Return the thesis's four effectors, by its names, of a walker."""
+    known = limbs(tree, [*BALLS.values()])
+    at = dict(zip(known.names, zip(known.joints, known.offsets, strict=True), strict=True))
+    return Effectors.of(
+        tree, {name: (tree.names[at[ours][0]], at[ours][1]) for name, ours in BALLS.items()}
+    )
+
+
+class Followed(NamedTuple):
+    """How well a recorded walk was followed.
+
+    limbs  mean distance of feet and hands to their targets [m]
+    knees  how far the knees are from the recorded ones, root mean square [degrees]
+    """
+
+    run: Track
+    limbs: float
+    knees: float
+
+
+def followed(recording: Any, parts: Sequence[str] | None = None, method: str = "dls") -> Followed:
+    """Follow a recorded walk by some effectors.
+
+    parts  beginnings of their names, such as "ball" and "hand"; all thirteen if none are given
+    """
+    tree = walker().tree
+    names = [name for name in limbs(tree).names if parts is None or name.startswith(tuple(parts))]
+    figure = Figure(tree, limbs(tree, names))
+    run = perform(retarget(recording, figure, CMU, feet=FEET), figure, method, cycles=1)
+    four = [name.startswith(("ball", "hand")) for name in figure.effectors.names]
+    ours = np.degrees(run.theta[:, [tree.index("knee.l"), tree.index("knee.r")]])
+    off = ours - knee_angles(recording)[: len(run)]
+    return Followed(run, float(run.error[:, four].mean()), float(np.sqrt(np.mean(off**2))))
+
+
+def knee_angles(recording: Any) -> Array:
+    """Find the knee angles of the recorded walk from places, (T, 2) [degrees].
+
+    Left and right: the angle between thigh and shin.
+    """
+    tree, each = recording.tree, []
+    places = forward(tree, recording.theta).positions
+    row = {name.rpartition(".")[0]: j for j, name in enumerate(tree.names)}
+    for side in "Left", "Right":
+        hip, knee, ankle = (places[:, row[f"{side}{one}"]] for one in ("UpLeg", "Leg", "Foot"))
+        thigh, shin = knee - hip, ankle - knee
+        long = np.linalg.norm(thigh, axis=-1) * np.linalg.norm(shin, axis=-1)
+        each.append(np.degrees(np.arccos(np.clip(np.vecdot(thigh, shin) / long, -1, 1))))
+    return np.stack(each, axis=-1)
+
+
+def compared(recording: Any, methods: Sequence[str], *, cycles: float = 3) -> pd.DataFrame:
+    """Measure the three walks by each method.
+
+    And the norm's angles, for which nothing is solved. The columns are those of `gait_report`.
+    """
+    runs: dict[str, Track] = {}
+    paths: dict[str, Motion] = {}
+    for name, (figure, path) in three_walks(recording).items():
+        for method in methods:
+            runs[f"{name}, {method}"] = perform(path, figure, method, cycles=cycles)
+            paths[f"{name}, {method}"] = path
+    runs["norm, not solved"] = imitate(natural, walker(), cycles=cycles)
+    paths["norm, not solved"] = natural
+    return gait_report(runs, paths)
+
+
+class Strides:
+    """The strides of a motion, of each side.
+
+    A stride goes from where the foot comes down to where it comes down again.
+    """
+
+    def __init__(self, path: Motion) -> None:
+        self.period, self.rate = path.period, path.rate
+        times = np.arange(-self.period, 2 * self.period, FINE)
+        self.strikes = {side: quality.strikes(path, times, side) for side in "lr"}
+
+    def share(self, phase: ArrayLike, side: str) -> Array:
+        """Return the share of the stride, 0 to 1, at phases (...) [rad]."""
+        at = np.asarray(phase) / self.rate % self.period
+        begins = self.strikes[side]
+        i = np.clip(np.searchsorted(begins, at, side="right") - 1, 0, len(begins) - 2)
+        return np.asarray((at - begins[i]) / (begins[i + 1] - begins[i]))
+
+
+def lately(session: Session, last: int) -> Track | None:
+    """Return the last ticks on the motion's own clock.
+
+    The poses are those of the shown method, for as many ticks as the motion has been set as it is
+    now: before, it was another walk. The time of a frame is its phase by `path.rate`, as the
+    measures of a gait want it. None before the second tick.
+    """
+    log = session.log(last=last)
+    if len(log) < 2:
+        return None
+    rate = session.gait.rate
+    usual = rate * session.gait.step_frequency * session.dt * session.gait.slowdown
+    other = np.flatnonzero(abs(np.diff(log.phase) - usual) > 1e-6 * abs(usual))
+    begin = other[-1] + 1 if len(other) else 0
+    run = log.tracks()[session.method]
+    return replace(
+        run,
+        times=log.phase[begin:] / rate,
+        targets=run.targets[begin:],
+        theta=run.theta[begin:],
+        error=run.error[begin:],
+        capped=run.capped[begin:],
+        held=run.held[begin:],
+    )
