@@ -18,7 +18,7 @@ from ikteach.motion.rules import LimitRule
 from ikteach.solvers import SOLVERS, Solver, dls, sdls, transpose
 from ikteach.study.experiment import Round, arrivals, starts, step_times, turns
 from ikteach.study.runs import after
-from ikteach.study.trials import Motion, Trials, trials
+from ikteach.study.trials import TargetsOfTime, Trials, trials
 
 IN_REACH = replace(gait.walking, name="in reach", x_hand=0.3)  # walking, and the hands arrive too
 MOTIONS = {**gait.MOTIONS, "in reach": IN_REACH}
@@ -118,7 +118,7 @@ def one_hand(tree: Tree) -> Effectors:
 
 
 def _alone(
-    tree: Tree, effectors: Effectors, motion: Mapping[str, Motion], **options: Any
+    tree: Tree, effectors: Effectors, motion: Mapping[str, TargetsOfTime], **options: Any
 ) -> pd.DataFrame:
     """Run the methods on one motion, with equal caps."""
     caps = {"equal": dict.fromkeys(SOLVERS, np.radians(30))}

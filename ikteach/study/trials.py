@@ -28,7 +28,7 @@ HOLD: Mapping[str, LimitRule] = MappingProxyType({"hold": hold})
 FACTORS = ["method", "limits", "motion", "caps", "damping", "start"]  # of an experiment
 
 
-class Motion(Protocol):
+class TargetsOfTime(Protocol):
     """Targets of time, as a `Gait` gives them."""
 
     def __call__(self, T: Array, /) -> Array:
@@ -94,7 +94,7 @@ class Trials:
 def trials(
     tree: Tree,
     effectors: Effectors,
-    motions: Mapping[str, Motion],
+    motions: Mapping[str, TargetsOfTime],
     *,
     starts: ArrayLike,
     caps: Mapping[str, Caps] = NO_CAPS,
@@ -215,7 +215,7 @@ def _check_limits(limits: Mapping[str, LimitRule]) -> None:
 
 
 def _can_reach(
-    tree: Tree, effectors: Effectors, motions: Mapping[str, Motion], known: Mask | None
+    tree: Tree, effectors: Effectors, motions: Mapping[str, TargetsOfTime], known: Mask | None
 ) -> Mask:
     """Find which effectors can reach (m, k), where it is not `known`."""
     if known is None:
@@ -251,7 +251,7 @@ def _check_caps(caps: Mapping[str, Caps], methods: Iterable[str]) -> None:
 
 
 def _targets(
-    effectors: Effectors, motions: Mapping[str, Motion], when: Array, *, by_phase: bool
+    effectors: Effectors, motions: Mapping[str, TargetsOfTime], when: Array, *, by_phase: bool
 ) -> Array:
     """Find the targets (m, T, k, 3) of each motion at times or phases (T,)."""
     if not (isinstance(motions, Mapping) and motions):
@@ -273,7 +273,7 @@ def _targets(
 
 
 def reachable_throughout(
-    tree: Tree, effectors: Effectors, motions: Mapping[str, Motion], phases: int = 8
+    tree: Tree, effectors: Effectors, motions: Mapping[str, TargetsOfTime], phases: int = 8
 ) -> Mask:
     """Tell which effectors reach their targets in all phases: (m, k)."""
     angles = np.linspace(0, 2 * np.pi, count("phases", phases), endpoint=False)

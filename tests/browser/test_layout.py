@@ -45,17 +45,7 @@ FIGURES = {
     ),
     "11": ("from ikteach.view.chapters.beyond import WalksPlayer as Made", "", SCENE),
 }
-BESIDE = [
-    "00",
-    "02",
-    "04",
-    "07",
-    "08",
-    "09",
-    "10",
-    "11",
-    "svd",
-]  # controls stand beside the picture
+BESIDE = "00 02 04 07 08 09 10 11 svd".split()  # controls stand beside the picture
 
 
 class Size(NamedTuple):
