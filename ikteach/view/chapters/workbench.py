@@ -70,8 +70,8 @@ class Workbench(Live):
             titles=[*self.panels, "Recording", "One iteration, magnified"],
             selected_index=0,
         )
-        self._table, self._aside = Prose(), widgets.VBox()
-        self._arranged = Arranged(self._stage(), [self._drawer, self._table])
+        self._table, self._aside = Prose(), widgets.VBox()  # aside: a run that is looked at
+        self._arranged = Arranged(self._stage(), [self._aside, self._drawer, self._table])
         self.children = [
             self._arranged,
             self.status,
@@ -248,8 +248,8 @@ class Workbench(Live):
         self.view.renew()
 
     def _stage(self) -> list[widgets.Widget]:
-        """List the picture, the clock, and a run that is looked at."""
-        return [self.scene.widget, self.bar.widget, self._aside]
+        """List the picture and the clock."""
+        return [self.scene.widget, self.bar.widget]
 
     def _targets(self) -> Targets:
         targets = Targets(

@@ -213,7 +213,7 @@ def play_button() -> Any:
 
     Its label names the effect of a click.
     """
-    made = widgets.ToggleButton(value=True, description="Pause", layout={"width": "80px"})
+    made = widgets.ToggleButton(value=True, description="Pause", layout={"width": "5em"})
 
     def name(change: Any) -> None:
         made.description = "Pause" if change["new"] else "Play"
