@@ -12,6 +12,7 @@ OPEN = "ikteach.serve.lab"
 COMMANDS = {  # each a module with main(argv), which gives the exit code
     "build": "ikteach.publish.builds",
     "collect": "ikteach.publish.collect",
+    "grade": "ikteach.publish.grade",
     "lecture": "ikteach.serve.lecture",
     "site": "ikteach.publish.site",
 }

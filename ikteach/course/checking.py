@@ -50,6 +50,7 @@ NOT_YET = "Not yet"
 SECONDS = 5.0  # what a check may take in all
 DRAWING = 20.0  # [s] what a picture may take: matplotlib is loaded for the first one
 LONGEST_SENTENCE = 500  # letters of a sentence
+OURS = {__file__}  # files whose lines are told to nobody: they only call the answer
 
 Returns = AnswerShape | Form | Callable[..., AnswerShape] | None
 
@@ -345,7 +346,7 @@ def _said(error: BaseException) -> str:
 def _told(error: BaseException) -> str:
     """Say what was raised, and in which line of the student's."""
     every = traceback.extract_tb(error.__traceback__)
-    frames = [frame for frame in every if frame.filename != __file__]  # but our own calls
+    frames = [frame for frame in every if frame.filename not in OURS]
     theirs = [frame for frame in frames if frame.filename == frames[0].filename]
     line = linecache.getline(theirs[-1].filename, theirs[-1].lineno or 0).strip() if theirs else ""
     end = f", in the line `{bounded(line, 120)}`" if line else ""

@@ -32,7 +32,9 @@ def main(argv: list[str]) -> int:
         "since it was made is never overwritten.",
         allow_abbrev=False,
     )
-    parser.add_argument("build", choices=BUILDS, help="notebooks without or with solutions; pages")
+    parser.add_argument(
+        "build", choices=BUILDS, help="notebooks without or with solutions; pages; assignments"
+    )
     parser.add_argument("folder", metavar="FOLDER", type=Path)
     options = parser.parse_args(argv)
     notebooks = find_course().notebooks
@@ -75,7 +77,27 @@ def pages(notebooks: Path, folder: Path) -> None:
         path.unlink()
 
 
-BUILDS = {"student": student, "instructor": instructor, "html": pages}
+def nbgrader(notebooks: Path, folder: Path) -> None:
+    """Write the exercises as assignments of nbgrader."""
+    from ikteach.publish import assignments
+
+    assignments.nbgrader(notebooks, folder)
+
+
+def otter(notebooks: Path, folder: Path) -> None:
+    """Write the exercises as sources of `otter assign`."""
+    from ikteach.publish import assignments
+
+    assignments.otter(notebooks, folder)
+
+
+BUILDS = {
+    "student": student,
+    "instructor": instructor,
+    "html": pages,
+    "nbgrader": nbgrader,
+    "otter": otter,
+}
 
 
 def _as_it_is(notebook: Notebook, chapter: str) -> Notebook:

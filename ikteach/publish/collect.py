@@ -52,7 +52,7 @@ def collect(folder: Path) -> Collected:
     rows: list[dict[str, Any]] = []
     logs: list[pd.DataFrame] = []
     skipped: dict[str, str] = {}
-    for path, hindrance in _files(folder):
+    for path, hindrance in files_of(folder, (".json", ".zip")):
         name = path.relative_to(folder)
         student = name.parts[0] if len(name.parts) > 1 else name.stem
         who = {"student": whole_characters(student), "file": whole_characters(str(name))}
@@ -122,12 +122,12 @@ def main(argv: list[str]) -> int:
     except NotADirectoryError as error:
         raise RefusedError(f"{error}.") from None
     for name, why in found.skipped.items():
-        print(_shown(f"{name}: {why}"), file=sys.stderr)
+        print(shown_text(f"{name}: {why}"), file=sys.stderr)
     if found.table.empty:
         raise RefusedError(f"There are no answers in {options.folder}.")
     count = found.table[["student", "file"]].nunique()
     print(f"{len(found.table)} answers of {count['student']} students in {count['file']} files")
-    print(_shown(summarise(found.table).to_string()))
+    print(shown_text(summarise(found.table).to_string()))
     for name, path in outputs.items():
         try:
             write_whole(path, harmless(getattr(found, name)).to_csv(index=False))
@@ -152,19 +152,19 @@ def _text(cell: Any) -> Any:
     return FORMULA.sub("'", cell)
 
 
-def _shown(text: str) -> str:
+def shown_text(text: str) -> str:
     """Text as a terminal may show it: without what would steer it."""
     return "".join(one if one.isprintable() or one == "\n" else "�" for one in text)
 
 
-def _files(folder: Path) -> Iterator[tuple[Path, str]]:
-    """Find the files that may hold answers, with any hindrance."""
+def files_of(folder: Path, endings: tuple[str, ...]) -> Iterator[tuple[Path, str]]:
+    """Find the files with these endings, with any hindrance."""
     unreadable: list[OSError] = []
     for place, folders, names in os.walk(folder, onerror=unreadable.append):
         folders[:] = sorted(name for name in folders if not name.startswith("."))
         for name in sorted(names):
             path = Path(place, name)
-            if name.startswith(".") or path.suffix.lower() not in (".json", ".zip"):
+            if name.startswith(".") or path.suffix.lower() not in endings:
                 continue
             link = "it is a link, and leads elsewhere" if path.is_symlink() else ""
             packed = "unpack it first" if path.suffix.lower() == ".zip" else ""
