@@ -17,7 +17,7 @@ from ikteach.body.extent import extent
 from ikteach.body.tree import GROUND
 from ikteach.checks import numbers, shown
 from ikteach.names import unknown
-from ikteach.view.stage.lengths import Lengths
+from ikteach.view.stage.lengths import units
 from ikteach.view.stage.skin import skin_of, stick_skin
 
 SQUARE = 0.5  # side of a square of the floor under a human [m]
@@ -149,7 +149,7 @@ class Stage:
             self.base = tree.offsets[tree.parents == GROUND].mean(axis=0)
             self.skin = stick_skin(tree, effectors, 0.03 * self.unit)
         self.normal = plane_of(tree, effectors)
-        self._length = Lengths.of(tree, effectors)
+        self._units = units(tree, effectors)
         self.apart = (1.5 if self.human else 2 * REACH) * self.unit if apart is None else apart
         self.places = np.zeros((len(names), 3))
         self.places[:, 0] = self.apart * (np.arange(len(names)) - (len(names) - 1) / 2)
@@ -299,14 +299,9 @@ class Stage:
         A row per figure. A direction is off by an angle [°].
         """
         gaps = np.linalg.norm(now.targets - now.effectors, axis=-1)
-        off = np.degrees(angle(now.effectors - now.origins, now.targets - now.origins))
-        return [
-            [
-                self._length(gap) if w else f"{turn:.1f}°"
-                for gap, turn, w in zip(*row, self.effectors.w, strict=True)
-            ]
-            for row in zip(gaps.tolist(), off.tolist(), strict=True)
-        ]
+        off = angle(now.effectors - now.origins, now.targets - now.origins)
+        rows = np.where(self.effectors.w, gaps, off).tolist()
+        return [[unit(far) for unit, far in zip(self._units, row, strict=True)] for row in rows]
 
     def arrows(self, columns: Array) -> Array:
         """Make arrows (..., n, 3) [m] of columns of J (..., 3, n): `SHOWN_AT` for 1 m/rad.

@@ -4,12 +4,16 @@ import numpy as np
 import pytest
 
 from ikteach.body import Effectors, figures, forward, locate
+from ikteach.motion.live.session import Session
 from ikteach.view import StillScene
 from ikteach.view.charts import outline
 from ikteach.view.stage.basics import Gaps, Pointers, TargetMarks
 from ikteach.view.stage.layers import LAYERS
+from ikteach.view.stage.lengths import misses, units
 from ikteach.view.stage.stage import Stage, angle
 from ikteach.view.stage.trails import feet
+from ikteach.view.tools.replay import Replay
+from ikteach.view.tools.runs import error_words
 
 WALKER = figures.walker()
 THETA = WALKER.tree.rest + np.r_[0.4, 0.1, 0.7, np.full(len(WALKER.tree) - 3, 0.1)]
@@ -124,3 +128,28 @@ def test_layers_at_an_effector_are_at_the_tip():
     trail.note(now)
     marks = trail.place(now).reshape(len(HERE), -1, 3, 4)[which, :, :, 3]
     np.testing.assert_allclose(marks[~np.isnan(marks[:, 0])], [tip])
+
+
+@pytest.mark.parametrize("phi", [0.0, 1e-6, 1.0, np.pi])
+def test_the_error_of_a_direction_is_read_as_its_angle(phi):
+    ends = ARM.effectors
+    chord = 2 * 0.5 * np.sin(phi / 2)
+    read = misses(ends, np.array([[0.3, chord]]))
+    np.testing.assert_allclose(read, [[0.3, phi]], atol=1e-7)
+    point, way = units(*ARM)
+    assert (point(0.3), way(read[0, 1])) == ("30.0 cm", f"{np.degrees(phi):.1f}°")
+
+
+def test_a_run_tells_points_in_lengths_and_directions_in_degrees():
+    session = Session(figure=WALKER)
+    for _ in range(5):
+        session.tick()
+    run = session.log()
+    error = run.error[:, 0]
+    words = error_words(run, error)
+    largest = np.degrees(misses(run.effectors, error)[:, WAYS[0]].max())
+    assert f"at most {largest:.1f}° at" in words.split("pelvis.up")[1].split(";")[0]
+    assert "°" not in words.split("pelvis.up")[0]
+    replay = Replay(run)
+    assert replay.rows.header[3:-1][-2:] == ["pelvis.up [°]", "pelvis.ahead [°]"]
+    replay.close()
