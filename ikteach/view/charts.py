@@ -121,7 +121,7 @@ def phase_plot(table: pd.DataFrame) -> Still:
 def outline(tree: Tree, effectors: Effectors, theta: Array) -> Array:
     """Locate joints and effectors of a planar figure: their x and y, (2, n + k) [m]."""
     frames = forward(tree, theta)
-    return np.concatenate([frames.positions, locate(frames, effectors)])[:, :2].T
+    return np.concatenate([frames.positions, locate(frames, effectors)[effectors.w == 1]])[:, :2].T
 
 
 def draw_distances(axes: Axes, at: Any, error: Mapping[Any, Any], least: float = LEAST) -> None:

@@ -1,7 +1,9 @@
 """Scene, handles and targets as a student has them: in a real JupyterLab, by mouse and by keys."""
 
 import io
+import shutil
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import nbformat
@@ -57,10 +59,31 @@ goal.on_change(draw)
 draw()
 plane.widget"""
 
+WAYS = """plane.close()
+from ikteach.body import Effectors
+from ikteach.formats.urdf import read_urdf
+robot = read_urdf("arm7.urdf").tree
+last = robot.names[-1]
+ends = Effectors.of(robot, {"grip": (last, (0, 0, 0.1))}, directions={
+    "grip.up": (last, (0, 0.3, 0)), "grip.ahead": (last, (0, 0, 0.3))})
+pose = robot.rest + 0.4
+seven = Scene(robot, ends)
+aim = Targets(seven, locate(forward(robot, pose), ends))
+def look(*_):
+    global pose, tips
+    for _ in range(30):
+        pose = step(robot, pose, ends, aim.positions, "dls").theta
+    seven.show(pose, aim.positions)
+    tips = seven.now.targets[0]
+aim.on_change(look)
+look()
+VBox([seven.widget, aim])"""
+
 
 @pytest.fixture(scope="module")
 def scene(lab: Lab, open_notebook: Any) -> Iterator[Notebook]:
-    cells = [nbformat.v4.new_code_cell(cell) for cell in (HUMAN, FOUR, ARM)]
+    cells = [nbformat.v4.new_code_cell(cell) for cell in (HUMAN, FOUR, ARM, WAYS)]
+    shutil.copy(Path(__file__).parents[1] / "data" / "arm7.urdf", lab.folder)
     book = nbformat.v4.new_notebook(cells=cells)
     book.metadata.kernelspec = {"name": "python3", "display_name": "Python 3"}
     nbformat.write(book, lab.folder / "scene.ipynb")
@@ -89,13 +112,15 @@ def differ(one: np.ndarray, other: np.ndarray) -> float:
     return float((abs(one - other).max(axis=-1) > 24).mean())
 
 
-def where(scene: Notebook, target: int, name: str = "scene", panel: str = "targets") -> list[float]:
+def where(
+    scene: Notebook, target: int, name: str = "scene", at: str = "targets.positions"
+) -> list[float]:
     """Where the middle of a target is in the page, in pixels."""
     code = f"""
 import numpy as _np
 from ikteach.view.stage.stage import picture_axes as _axes
 _eye = _np.array({name}.camera.position)
-_x, _y, _z = (_np.array({panel}.positions[{target}]) - _eye) @ _axes(
+_x, _y, _z = (_np.array({at}[{target}]) - _eye) @ _axes(
     _eye - {name}.renderer.controls[0].target)
 """
     x, y, z = scene.kernel("[float(_x), float(_y), float(_z)]", code)
@@ -302,7 +327,7 @@ def test_a_planar_arm_is_dragged_in_its_plane(scene: Notebook) -> None:
     scene.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
     scene.page.wait_for_selector(".ikteach-stage", timeout=READY)
     assert np.median(picture(scene, "scene_arm")) < 40
-    x, y = where(scene, 0, "plane", "goal")
+    x, y = where(scene, 0, "plane", "goal.positions")
     drag(scene, x, y, -80, 20)
     scene.page.mouse.up()
     scene.settle("bool(goal.positions[0, 0] < 1.2)", True)
@@ -317,3 +342,36 @@ def test_the_output_holds_a_picture_for_places_without_a_kernel(scene: Notebook)
     ]  # fmt: skip
     png = bytes(scene.kernel(f"list({bundle}['image/png'])"))
     assert Image.open(io.BytesIO(png)).size == (540, 480)
+
+
+def test_a_direction_is_turned_by_mouse_keys_and_numbers(scene: Notebook) -> None:
+    page = scene.page
+    scene.run_cell("seven = Scene")
+    page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
+    page.wait_for_selector(".ikteach-stage", timeout=READY)
+    scene.settle("seven.driver.drawn >= 0 or seven.driver.seen", True)
+    was = np.array(scene.kernel("aim.positions.tolist()"))
+    x, y = where(scene, 1, "seven", "tips")
+    drag(scene, x, y, 50, -25)
+    page.mouse.up()
+    scene.settle(f"bool(abs(aim.positions[1] - {was[1].tolist()}).max() > 0.02)", True)
+    scene.frames(1)
+    turned = np.array(scene.kernel("aim.positions.tolist()"))
+    assert np.linalg.norm(turned[1]) == pytest.approx(0.3)
+    np.testing.assert_array_equal(turned[[0, 2]], was[[0, 2]])
+    page.wait_for_selector(f"{SAID} >> text=grip.up: points to x", timeout=READY)
+    scene.shot("scene_directions", CANVAS)
+    page.keyboard.press("ArrowUp")
+    scene.settle(f"aim.positions[1].tolist() != {turned[1].tolist()}", True)
+    assert scene.kernel("float(np.linalg.norm(aim.positions[1]))") == pytest.approx(0.3)
+    page.keyboard.press("Escape")
+    scene.settle(f"bool(abs(aim.positions[1] - {turned[1].tolist()}).max() < 1e-6)", True)
+    box = page.get_by_label("grip.ahead z", exact=True)
+    box.fill("-0.18")
+    box.press("Enter")
+    scene.settle("round(float(aim.positions[2, 2]), 6)", -0.18)
+    assert scene.kernel("float(np.linalg.norm(aim.positions[2, :2]))") == pytest.approx(0.24)
+    box.fill("0.4")
+    box.press("Enter")
+    page.wait_for_selector(".ikteach-alert >> text=goes from -0.30 to 0.30 m", timeout=READY)
+    scene.shot("scene_directions_page")

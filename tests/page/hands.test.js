@@ -1,5 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { around } from "../../ikteach/view/webgl/handles.js";
 import { Scene } from "../../ikteach/view/webgl/scene.js";
 import { shift } from "../../ikteach/view/widgets/inview.js";
 import { rounded } from "../../ikteach/view/widgets/reachable.js";
@@ -42,4 +43,19 @@ test("what is moved stays in the picture, at its depth", () => {
   const { x, y, z } = scene.seen(new Seen(7, -0.2, 0.3));
   assert.ok(x < 1 && x > 0.9);
   assert.deepEqual([y, z], [-0.2, 0.3]);
+});
+
+test("the target of a direction turns, where it is free to, and keeps its length", () => {
+  const all = [
+    [-2, -2, -2],
+    [2, 2, 2],
+  ];
+  assert.deepEqual(around([0, 0, 7], ...all, 2), [0, 0, 2]);
+  assert.deepEqual(around([-3, 4, 0], ...all, 2), [-1.2, 1.6, 0]);
+  const plane = [
+    [-2, -2, 0],
+    [2, 2, 0],
+  ];
+  assert.deepEqual(around([-3, 4, 9], ...plane, 2), [-1.2, 1.6, 0]);
+  assert.ok(around([0, 0, 9], ...plane, 2).every(Number.isNaN));
 });

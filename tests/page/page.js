@@ -119,6 +119,10 @@ export class Vector {
     return this.add({ x: -x, y: -y, z: -z });
   }
 
+  toArray() {
+    return [this.x, this.y, this.z];
+  }
+
   distanceTo({ x, y, z }) {
     return Math.hypot(this.x - x, this.y - y, this.z - z);
   }

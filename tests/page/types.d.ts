@@ -123,6 +123,7 @@ interface Movable {
   nodes: Model[];
   chosen: number;
   where(node: number): Vector3;
+  stride(node: number, step: number): number;
   move(node: number, at: Vector3, fresh: boolean): void;
   choose(node: number): void;
   undo(): void;

@@ -83,8 +83,8 @@ class Drawing:
 
     def _bodies(self, pixels: Pixels, placed: "list[_Placed]") -> Any:
         """Draw the solids, what can be looked through after all else; how near they are."""
-        nearness = np.zeros(pixels.shape[:2], dtype="f4")
-        clear = []
+        nearness, through = (np.zeros(pixels.shape[:2], dtype="f4") for _ in range(2))
+        clear, last = [], []
         for layer, rows in placed:
             known = self._solids.get(layer)
             if known is None:
@@ -92,7 +92,9 @@ class Drawing:
             there = ~np.isnan(rows[:, 0, 3])
             for mesh, parts in zip(layer.meshes, known, strict=True):
                 seen = [part for part in parts if there[part.frame]]
-                if mesh.opacity >= SOLID:
+                if mesh.through:
+                    last.append((seen, rows))
+                elif mesh.opacity >= SOLID:
                     draw(pixels, self.eye, seen, rows, nearness)
                 elif seen:
                     clear.append((mesh, seen, rows))
@@ -104,6 +106,8 @@ class Drawing:
             pixels[at] = mixed.astype(np.uint8)
             if mesh.hides:
                 nearness = near
+        for seen, rows in last:
+            draw(pixels, self.eye, seen, rows, through)
         return nearness
 
     def _shadow(self, pen: Any, height: float, looks: Paper) -> None:
@@ -214,17 +218,22 @@ def caption(image: Image.Image, words: str, ink: str) -> None:
     ImageDraw.Draw(image).text(place, visible(words), fill=ink, font=font(high))
 
 
-def legend(image: Image.Image, title: str, rows: Sequence[tuple[str, str, bool]], ink: str) -> None:
+def legend(image: Image.Image, title: str, rows: Sequence[tuple[str, str, str]], ink: str) -> None:
     """Write names and marks into the upper right corner.
 
-    The marks have the colours of the names, and are boxed or not.
+    The marks have the colours of the names, and a shape of `forms.kinds`.
     """
     pen, small, high = ImageDraw.Draw(image), font(11), 15
     names = [brief(name, 24) for name, _, _ in rows]
     wide = max(pen.textlength(name, font=small) for name in [title, *names])
     left = image.width - wide - 40
     pen.text((left + (wide + 24) / 2, 12), title, fill=ink, font=small, anchor="mm")
-    for i, (name, (_, colour, box)) in enumerate(zip(names, rows, strict=True)):
+    for i, (name, (_, colour, kind)) in enumerate(zip(names, rows, strict=True)):
         y = 12 + high * (i + 1)
-        (pen.rectangle if box else pen.ellipse)((left + 2, y - 5, left + 12, y + 5), fill=colour)
+        if kind == "arrow":
+            pen.line((left, y, left + 8, y), fill=colour, width=3)
+            pen.polygon([(left + 7, y - 5), (left + 16, y), (left + 7, y + 5)], fill=colour)
+        else:
+            draw = pen.rectangle if kind == "box" else pen.ellipse
+            draw((left + 2, y - 5, left + 12, y + 5), fill=colour)
         pen.text((left + 24, y), name, fill=ink, font=small, anchor="lm")

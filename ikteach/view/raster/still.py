@@ -4,18 +4,15 @@ import io
 from collections.abc import Sequence
 from typing import Unpack
 
-import numpy as np
-
 from ikteach.arrays import Array
 from ikteach.body import Effectors, Tree
 from ikteach.names import unknown
 from ikteach.view.raster.drawing import Drawing, legend
 from ikteach.view.stage.basics import BASICS
 from ikteach.view.stage.colours import effector_colour, paper
-from ikteach.view.stage.forms import boxed
+from ikteach.view.stage.forms import kinds
 from ikteach.view.stage.layer import Layer
 from ikteach.view.stage.layers import LAYERS
-from ikteach.view.stage.lengths import Lengths
 from ikteach.view.stage.stage import About, Now, Stage
 from ikteach.view.widgets import doors
 from ikteach.view.widgets.closing import Living
@@ -138,12 +135,10 @@ class StillScene(Living):
             self._widget.png, self._widget.alt = self.png, self.alt
 
     def _words(self, now: Now) -> str:
-        far = np.linalg.norm(now.targets - now.effectors, axis=-1)
-        length = Lengths.of(self.tree, self.effectors)
         rows = []
-        for name, row in zip(self.stage.names, far, strict=True):
+        for name, row in zip(self.stage.names, self.stage.far(now), strict=True):
             pairs = zip(self.effectors.names, row, strict=True)
-            distances = ", ".join(f"{effector} {length(d)}" for effector, d in pairs)
+            distances = ", ".join(f"{effector} {far}" for effector, far in pairs)
             rows.append(f"{name + ': ' if name else ''}{distances}")
         figure = "human" if self.stage.human else "figure"
         layers = "".join(f", {layer}" for layer, on in self.layers.items() if on)
@@ -156,8 +151,9 @@ def png(drawing: Drawing, layers: Sequence[Layer], now: Now, dark: bool) -> byte
     It has a legend of the targets.
     """
     image, out = drawing.picture(layers, now, dark), io.BytesIO()
-    names = drawing.stage.effectors.names
-    rows = [(name, effector_colour(i), boxed(name)) for i, name in enumerate(names)]
+    ends = drawing.stage.effectors
+    each = enumerate(zip(ends.names, kinds(ends.names, ends.w), strict=True))
+    rows = [(name, effector_colour(i), kind) for i, (name, kind) in each]
     legend(image, "targets", rows, paper(dark).ink)
     image.save(out, "PNG")
     return out.getvalue()

@@ -1,13 +1,13 @@
-"""Layers that are always drawn: floor, targets, figures, and rods from effectors to targets."""
+"""Layers that are always drawn: floor, targets, figures, directions, and ways that are left."""
 
 import numpy as np
 
 from ikteach.arrays import Array
 from ikteach.body.rotation import sticks, transforms
 from ikteach.view.stage.colours import GREY, SHIRT, effector_colour
-from ikteach.view.stage.forms import Ball, Box, Form, Grid, Label, Mesh, Piece, Rod, boxed
+from ikteach.view.stage.forms import Arrow, Ball, Box, Form, Grid, Label, Mesh, Piece, Rod, kinds
 from ikteach.view.stage.layer import Layer, hidden, upright
-from ikteach.view.stage.stage import SQUARE, Now
+from ikteach.view.stage.stage import SQUARE, Now, Stage
 
 FLOOR = 6.0  # side of the floor under a human [m]
 FINE, PLAIN = (10, 3), (8, 2)  # how the balls of one figure are cut, and those of several
@@ -31,7 +31,8 @@ class Floor(Layer):
 class TargetMarks(Layer):
     """Marks where effectors are to come.
 
-    They are balls, boxes on the right. Overlaid figures share them.
+    They are balls, boxes on the right; of directions they are arrows from their joints. Overlaid
+    figures share those of points.
     """
 
     name = "targets"
@@ -39,17 +40,34 @@ class TargetMarks(Layer):
     def build(self) -> None:
         """Make a mark for each target of each figure."""
         stage, radius = self.stage, 0.045 * self.stage.unit
-        self.sets = 1 if stage.overlaid else len(stage)
-        marks: list[Form] = [
-            Box(0.78 * radius) if boxed(name) else Ball((0, 0, 0), (radius,) * 3)
-            for name in stage.effectors.names
+        ends = stage.effectors
+        self.sets = 1 if stage.overlaid and not ends.directed else len(stage)
+        arrows = [Arrow(thickness) for thickness in 0.012 * _sizes(stage)]
+        forms: dict[str, Form] = {"box": Box(0.78 * radius), "ball": Ball((0, 0, 0), (radius,) * 3)}
+        each = zip(kinds(ends.names, ends.w), arrows, strict=True)
+        marks = [forms.get(kind, arrow) for kind, arrow in each]
+        self.rows = self.sets * len(marks)
+        pieces = [
+            Piece(row, form, effector_colour(row % len(marks)))
+            for row, form in enumerate(marks * self.sets)
         ]
-        colours = [effector_colour(i) for i in range(len(marks))]
-        self.add(marks * self.sets, colours, opacity=0.85, single=True)
+        for arrows_only in (False, True):
+            these = [piece for piece in pieces if isinstance(piece.form, Arrow) is arrows_only]
+            if these:
+                self.meshes.append(Mesh(these, 0.85, single=True, through=arrows_only))
 
     def place(self, now: Now) -> Array:
         """Put the marks where the targets are."""
-        return upright((now.targets + self.stage.places[:, None])[: self.sets])
+        targets = (now.targets + self.stage.places[:, None])[: self.sets]
+        rows = upright(targets)
+        if self.stage.effectors.directed:
+            rows = rows.reshape(*targets.shape[:2], 3, 4)
+            point = self.stage.effectors.w == 1
+            begin = (now.origins + self.stage.places[:, None])[:, ~point]
+            rows[:, ~point] = sticks(begin, targets[:, ~point])
+            if self.stage.overlaid:
+                rows[1:, point] = np.nan
+        return rows.reshape(-1, 3, 4)
 
 
 class Figures(Layer):
@@ -118,7 +136,40 @@ class Gaps(Layer):
         return hidden(rods, short).reshape(-1, 3, 4)
 
 
-BASICS = (Floor, TargetMarks, Figures, Gaps)
+class Pointers(Layer):
+    """A rod from its joint for each effector that is a direction.
+
+    They and their targets are seen through the body, in which they often are.
+    """
+
+    name = "directions"
+
+    def build(self) -> None:
+        """Make a rod for each of them, of each figure.
+
+        It is thicker than its target's arrow, and thinner than the arrow's head.
+        """
+        stage = self.stage
+        self._which = np.flatnonzero(stage.effectors.w == 0)
+        thick = 0.018 * _sizes(stage)
+        rods = [Rod((0, 0, 0), (0, 1, 0), thick[i]) for i in self._which]
+        if rods:
+            colours = [effector_colour(int(i)) for i in self._which]
+            self.add(rods * len(stage), colours, through=True)
+
+    def place(self, now: Now) -> Array:
+        """Stretch the rods from the joints to the tips."""
+        places = self.stage.places[:, None]
+        begin, end = (at[:, self._which] + places for at in (now.origins, now.effectors))
+        return sticks(begin, end).reshape(-1, 3, 4)
+
+
+BASICS = (Floor, TargetMarks, Figures, Gaps, Pointers)
+
+
+def _sizes(stage: Stage) -> Array:
+    """Measure how thick arrows may be, (k,) [m]: less on short ones."""
+    return np.minimum(stage.unit, 5 * np.linalg.norm(stage.effectors.offsets, axis=-1))
 
 
 def _brief(name: str) -> str:

@@ -1,6 +1,6 @@
 """Forms that a scene is made of. Metres; each renderer draws them in its own way."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from ikteach.arrays import Array
@@ -113,6 +113,7 @@ class Mesh(NamedTuple):
     hides    whether it hides what is behind it
     cut      slices of a ball, and rings of each half, where it is made of triangles
     single   whether each piece is a thing of its own, to be taken hold of
+    through  whether it is seen through whatever stands before it
     """
 
     pieces: Sequence[Piece]
@@ -120,6 +121,7 @@ class Mesh(NamedTuple):
     hides: bool = True
     cut: tuple[int, int] = (10, 3)
     single: bool = False
+    through: bool = False
 
 
 class Label(NamedTuple):
@@ -132,6 +134,15 @@ class Label(NamedTuple):
     text: str
     colour: str
     height: float
+
+
+def kinds(names: Sequence[str], w: Iterable[float]) -> list[str]:
+    """Tell the shapes of targets with these names and w.
+
+    "ball" or "box", and "arrow" of a direction (w = 0).
+    """
+    each = zip(names, w, strict=True)
+    return [("box" if boxed(name) else "ball") if point else "arrow" for name, point in each]
 
 
 def boxed(name: str) -> bool:

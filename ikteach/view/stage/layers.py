@@ -207,14 +207,14 @@ class WorkspaceBounds(Layer):
 
         There is no outer one if a chain is without end, no inner one if it has no hole.
         """
-        f, k = len(self.stage), len(self.stage.effectors)
+        f, k, places = len(self.stage), len(self.stage.effectors), self.stage.places
         found = np.full((f, k, 2, 3, 4), np.nan)
         axes = np.eye(3) if self.stage.normal is None else picture_axes(self.stage.normal)
         for i, (centre, inner, outer) in enumerate(now.reach):
             for side, radius in enumerate((outer, inner)):
                 if 1e-6 * self.stage.unit < radius < np.inf:
                     found[:, i, side, :, :3] = radius * axes
-                    found[:, i, side, :, 3] = centre + self.stage.places
+                    found[:, i, side, :, 3] = centre + now.origins[:, now.effector] + places
         return found.reshape(-1, 3, 4)
 
 

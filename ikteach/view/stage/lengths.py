@@ -1,8 +1,11 @@
-"""Lengths as a person reads them: in the unit that suits the size of the body."""
+"""Lengths as a person reads them, in the unit that suits the body, and angles in degrees."""
 
-from math import floor, log10
+from math import floor, log10, pi
 from typing import NamedTuple
 
+import numpy as np
+
+from ikteach.arrays import Array
 from ikteach.body import Effectors, Tree
 from ikteach.body.extent import extent
 
@@ -45,7 +48,7 @@ class Lengths(NamedTuple):
 
     def __call__(self, length: float, digits: int = 1) -> str:
         """Write a length [m] with its unit, as "12.3 cm"."""
-        return f"{self.number(length, digits)} {self.name}"
+        return f"{self.number(length, digits)}{'' if self is DEGREE else ' '}{self.name}"
 
 
 LEAST = {"km": 1e4, "m": 0.1, "mm": 1e-4, "µm": 1e-7, "nm": 0.0}  # reach [m] for places in them
@@ -59,6 +62,26 @@ UNITS = (
 )
 
 METRE = UNITS[1]
+DEGREE = Lengths("°", pi / 180)  # of lengths on a circle of radius 1
+
+
+def units(tree: Tree, effectors: Effectors) -> list[Lengths]:
+    """Choose the unit for the distance of each effector.
+
+    Directions are off by an angle.
+    """
+    length = Lengths.of(tree, effectors)
+    return [length if w else DEGREE for w in effectors.w]
+
+
+def misses(effectors: Effectors, error: Array) -> Array:
+    """Return errors (..., k) as they are read: [m], of directions [rad].
+
+    A direction that is off by φ has the error 2ℓ sin(φ/2).
+    """
+    length = np.linalg.norm(effectors.offsets, axis=-1)
+    diameter = np.where(effectors.w, np.inf, 2 * length)
+    return np.where(effectors.w, error, 2 * np.arcsin(np.minimum(error / diameter, 1)))
 
 
 def decade(tree: Tree, effectors: Effectors) -> float:

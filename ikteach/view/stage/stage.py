@@ -17,6 +17,7 @@ from ikteach.body.extent import extent
 from ikteach.body.tree import GROUND
 from ikteach.checks import numbers, shown
 from ikteach.names import unknown
+from ikteach.view.stage.lengths import units
 from ikteach.view.stage.skin import skin_of, stick_skin
 
 SQUARE = 0.5  # side of a square of the floor under a human [m]
@@ -47,7 +48,7 @@ class About(TypedDict, total=False):
     columns    (3, n) or (f, 3, n): that effector's rows of J [m/rad], an arrow per column
     ellipsoid  (directions (..., 3, 3) in columns, lengths (..., 3) [m/rad])
     reach      (centre (3,), inner, outer [m]) of each chain, at most one per effector; a radius
-               that is infinite is not drawn
+               that is infinite is not drawn. It is about the joint if `effector` is a direction
     frames     forward(tree, theta), from whoever has it already
     """
 
@@ -102,8 +103,9 @@ class Now(NamedTuple):
 
     positions: Array  # (f, n, 3) [m]
     orientations: Array  # (f, n, 3, 3)
-    effectors: Array  # (f, k, 3) [m]
-    targets: Array  # (f, k, 3) [m]
+    origins: Array  # (f, k, 3) [m] (1 − w) p_joint: where a direction begins, 0 for a point
+    effectors: Array  # (f, k, 3) [m] that of a point, or the tip of a direction
+    targets: Array  # (f, k, 3) [m] likewise
     floor: float
     advance: float
     effector: int
@@ -147,11 +149,12 @@ class Stage:
             self.base = tree.offsets[tree.parents == GROUND].mean(axis=0)
             self.skin = stick_skin(tree, effectors, 0.03 * self.unit)
         self.normal = plane_of(tree, effectors)
+        self._units = units(tree, effectors)
         self.apart = (1.5 if self.human else 2 * REACH) * self.unit if apart is None else apart
         self.places = np.zeros((len(names), 3))
         self.places[:, 0] = self.apart * (np.arange(len(names)) - (len(names) - 1) / 2)
         rest = forward(tree, tree.rest)
-        points = np.concatenate([rest.positions, locate(rest, effectors)])
+        points = np.concatenate([rest.positions, locate(rest, effectors)[effectors.w == 1]])
         self.floor = float(points[:, 1].min()) - 0.06 * self.unit
         self._stands = bool(points[:, 1].mean() > self.extent.centre[1])
 
@@ -228,7 +231,11 @@ class Stage:
         """The scene in a sentence."""
         named = [name for name in self.names if name]
         who = self.crowd + (f" ({', '.join(named)})" if named else "")
-        return f"{who} with targets for {', '.join(self.effectors.names)}."
+        each = list(zip(self.effectors.names, self.effectors.w, strict=True))
+        points = ", ".join(name for name, w in each if w)
+        ways = ", ".join(name for name, w in each if not w)
+        kinds = [f"targets for {points}"] * bool(points) + [f"directions for {ways}"] * bool(ways)
+        return f"{who} with {' and '.join(kinds)}."
 
     @property
     def crowd(self) -> str:
@@ -260,6 +267,9 @@ class Stage:
         frames = about.get("frames")
         if frames is None:
             frames = forward(self.tree, _checked("theta", theta, (f, n)))
+        positions = _checked("positions", frames.positions, (f, n, 3))
+        w = self.effectors.w[:, None]
+        origins = (1 - w) * positions[:, self.effectors.joints]
         columns, ellipsoid = about.get("columns"), about.get("ellipsoid")
         axes, lengths = (None, None) if ellipsoid is None else ellipsoid
         floor, effector = about.get("floor"), about.get("effector", 0)
@@ -269,10 +279,11 @@ class Stage:
         if len(reach) > k:
             raise ValueError(f"{k} effectors have at most {k} chains to show, not {len(reach)}")
         return Now(
-            _checked("positions", frames.positions, (f, n, 3)),
+            positions,
             _per_figure(frames.orientations, (f, n, 3, 3)),
-            _per_figure(locate(frames, self.effectors), (f, k, 3)),
-            _checked("targets", targets, (f, k, 3)),
+            origins,
+            _per_figure(locate(frames, self.effectors), (f, k, 3)) + origins,
+            _checked("targets", targets, (f, k, 3)) + origins,
             self.floor if floor is None else _number("floor", floor),
             _number("advance", about.get("advance", 0.0)),
             effector,
@@ -281,6 +292,16 @@ class Stage:
             None if lengths is None else _checked("lengths of the ellipsoid", lengths, (f, 3)),
             [(numbers("reach", centre), inner, outer) for centre, inner, outer in reach],
         )
+
+    def far(self, now: Now) -> list[list[str]]:
+        """Say how far each effector is from its target.
+
+        A row per figure. A direction is off by an angle [°].
+        """
+        gaps = np.linalg.norm(now.targets - now.effectors, axis=-1)
+        off = angle(now.effectors - now.origins, now.targets - now.origins)
+        rows = np.where(self.effectors.w, gaps, off).tolist()
+        return [[unit(far) for unit, far in zip(self._units, row, strict=True)] for row in rows]
 
     def arrows(self, columns: Array) -> Array:
         """Make arrows (..., n, 3) [m] of columns of J (..., 3, n): `SHOWN_AT` for 1 m/rad.
@@ -314,6 +335,11 @@ def _number(name: str, value: Any) -> float:
     if array.ndim or not np.isfinite(array):
         raise ValueError(f"{name} must be one number, and finite, not {shown(value)}")
     return float(array)
+
+
+def angle(a: Array, b: Array) -> Array:
+    """Return the angles (...) from vectors a to b (..., 3) [rad]."""
+    return np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.vecdot(a, b))
 
 
 def picture_axes(back: Array) -> Array:

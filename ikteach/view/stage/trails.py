@@ -83,4 +83,5 @@ class Prints(Trail):
 
 def feet(effectors: Effectors) -> list[int]:
     """List the effectors that leave footprints."""
-    return [i for i, name in enumerate(effectors.names) if name.startswith("foot")]
+    each = enumerate(zip(effectors.names, effectors.w, strict=True))
+    return [i for i, (name, w) in each if w and name.startswith("foot")]

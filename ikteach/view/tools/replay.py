@@ -11,7 +11,8 @@ from ikteach.arrays import Array, Index
 from ikteach.body import Effectors, Tree
 from ikteach.motion.live.log import Log
 from ikteach.view.raster.film import Film, Shot
-from ikteach.view.tools.runs import error_picture, error_rows, error_words, length_of, places
+from ikteach.view.stage.lengths import misses
+from ikteach.view.tools.runs import error_picture, error_rows, error_words, places, units_of
 from ikteach.view.widgets import doors
 from ikteach.view.widgets.actor import attempt, message_of
 from ikteach.view.widgets.cell import REFRESH, Cell
@@ -129,7 +130,8 @@ class Replay(Cell):
                 f"tick {tick}, {at:.2f} s" for tick, at in zip(run.tick, run.clock, strict=True)
             ]
         with self.rows.hold_sync():
-            far = [f"{name} [{length_of(run).name}]" for name in run.effectors.names]
+            each = zip(run.effectors.names, units_of(run), strict=True)
+            far = [f"{name} [{unit.name}]" for name, unit in each]
             self.rows.header = ["tick", "clock [s]", "method", *far, "what changed"]
             self.rows.rows = error_rows(run, columns, error)
         self._draw()
@@ -187,11 +189,9 @@ class Replay(Cell):
         self.slider.value = self.curve.chosen = self.rows.chosen = self.at
         if aloud:
             run, t, i = self.run, self.at, self._columns[self.at]
-            length = length_of(run)
-            far = ", ".join(
-                f"{name} {length(d)}"
-                for name, d in zip(run.effectors.names, run.error[t, i], strict=True)
-            )
+            error = misses(run.effectors, run.error[t, i])
+            each = zip(run.effectors.names, units_of(run), error, strict=True)
+            far = ", ".join(f"{name} {unit(d)}" for name, unit, d in each)
             self.status.say(
                 f"Tick {run.tick[t]}, {run.clock[t]:.2f} s, by {run.methods[i]}. "
                 f"From its target: {far}."

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from ikteach.arrays import Array, Index
 from ikteach.motion.live.log import Log
 from ikteach.view import charts
-from ikteach.view.stage.lengths import Lengths, decade
+from ikteach.view.stage.lengths import Lengths, decade, misses, units
 from ikteach.view.widgets.picture import png_of
 
 
@@ -40,18 +40,18 @@ def error_picture(run: Log, error: Array) -> tuple[bytes, list[float]]:
 
 def error_words(run: Log, error: Array) -> str:
     """Put the plot of the distances (T, k) into words."""
-    length = length_of(run)
+    far = misses(run.effectors, error)
     each = "; ".join(
-        f"{name} {length(one.mean())} on average, at most {length(one.max())} at "
+        f"{name} {unit(one.mean())} on average, at most {unit(one.max())} at "
         f"{run.clock[one.argmax()]:.2f} s"
-        for name, one in zip(run.effectors.names, error.T, strict=True)
+        for name, unit, one in zip(run.effectors.names, units_of(run), far.T, strict=True)
     )
     return f"Distance to target from {run.clock[0]:.2f} to {run.clock[-1]:.2f} s: {each}."
 
 
-def length_of(run: Log) -> Lengths:
-    """Give the unit in which the run's distances are read."""
-    return Lengths.of(run.tree, run.effectors)
+def units_of(run: Log) -> list[Lengths]:
+    """Give the units in which the run's distances are read."""
+    return units(run.tree, run.effectors)
 
 
 def _last_run(run: Log) -> int:
@@ -76,13 +76,13 @@ def error_rows(run: Log, columns: Index, error: Array) -> list[list[str]]:
     for event in run.events:
         if event.run == _last_run(run):
             changed.setdefault(event.tick, []).append(str(event))
-    notes, length = _at_rows(run, changed), length_of(run)
+    notes, far = _at_rows(run, changed), misses(run.effectors, error)
     return [
         [
             str(run.tick[t]),
             f"{run.clock[t]:.2f}",
             run.methods[columns[t]],
-            *(length.number(d, 2) for d in error[t]),
+            *(unit.number(d, 2) for unit, d in zip(units_of(run), far[t], strict=True)),
             "; ".join(notes.get(t, [])),
         ]
         for t in range(len(run))

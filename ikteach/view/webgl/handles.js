@@ -44,7 +44,7 @@ class Handles {
     this.#scene = scene;
     this.#halo = halo;
     const step = model.get("step"); // a hair is a millimetre on a human
-    this.#pins = new Pins(scene, nodes, this.names.length, step / 50);
+    this.#pins = new Pins(scene, nodes, model.get("lengths"), step / 50);
     this.#post = new Courier(model);
     this.#said = said;
     this.#picking = new Picking(scene, stage, this);
@@ -64,12 +64,37 @@ class Handles {
    */
   move(node, at, fresh) {
     const target = node % this.names.length;
+    const inside = this.#inside(node, at);
+    this.#pins.pin(node, inside.clone().add(this.#origin(node)));
+    this.#post.send({ target, at: inside.toArray(), fresh });
+    this.say(`${this.names[target]}: ${this.#words(node, inside)}`);
+  }
+
+  /**
+   * The nearest that a target can be, from its origin: that of a direction turns, and no more.
+   * @param {number} node
+   * @param {Vector3} at
+   */
+  #inside(node, at) {
+    const target = node % this.names.length;
     const low = this.#scene.vector(...this.#model.get("low")[target]);
     const high = this.#scene.vector(...this.#model.get("high")[target]);
-    const inside = this.#scene.seen(at).sub(this.#place(node)).clamp(low, high);
-    this.#pins.pin(node, inside.clone().add(this.#place(node)));
-    this.#post.send({ target, at: inside.toArray(), fresh });
-    this.say(`${this.names[target]}: ${words(inside)}`);
+    const length = this.#pins.length(node);
+    if (!length) return this.#scene.seen(at).sub(this.#origin(node)).clamp(low, high);
+    const way = at.clone().sub(this.#origin(node));
+    const [x, y, z] = around(way.toArray(), low.toArray(), high.toArray(), length);
+    const turned = this.#scene.vector(x, y, z);
+    return Number.isFinite(x) ? turned : this.where(node).sub(this.#origin(node));
+  }
+
+  /**
+   * How far a key moves a target: a direction's tip no more than about 6°.
+   * @param {number} node
+   * @param {number} step
+   */
+  stride(node, step) {
+    const length = this.#pins.length(node);
+    return length ? Math.min(step, length / 10) : step;
   }
 
   /** Take the last move back, which the kernel may not have heard of. */
@@ -89,15 +114,17 @@ class Handles {
   choose(node) {
     this.chosen = node;
     this.#halo.visible = node >= 0;
-    if (node >= 0) this.nodes[node].obj.add(this.#halo);
-    else this.#halo.parent?.remove(this.#halo);
+    if (node >= 0) {
+      this.nodes[node].obj.add(this.#halo);
+      this.#halo.position.copy(this.#scene.vector(0, this.#pins.length(node) ? 1 : 0, 0)); // a tip
+    } else this.#halo.parent?.remove(this.#halo);
     const target = node < 0 ? -1 : node % this.names.length;
     this.#model.set("chosen", target);
     this.#model.save_changes();
     this.#scene.redraw();
     if (node < 0) return;
-    const at = this.where(node).sub(this.#place(node));
-    this.say(`${this.names[target]} chosen, ${words(at)}. ${TARGET}`);
+    const at = this.where(node).sub(this.#origin(node));
+    this.say(`${this.names[target]} chosen, ${this.#words(node, at)}. ${TARGET}`);
   }
 
   /** @param {string} text */
@@ -160,13 +187,35 @@ class Handles {
   }
 
   /**
-   * The place of the figure that the node belongs to.
+   * @param {number} node
+   * @param {Vector3} at
+   */
+  #words(node, at) {
+    return `${this.#pins.length(node) ? "points to " : ""}${words(at)}`;
+  }
+
+  /**
+   * From where a target is counted: the place of its figure, or where a direction begins.
    * @param {number} node
    */
-  #place(node) {
+  #origin(node) {
+    if (this.#pins.length(node)) return this.#pins.origin(node);
     const figure = Math.floor(node / this.names.length);
     return this.#scene.vector(...this.#model.get("places")[figure]);
   }
+}
+
+/**
+ * A vector turned along another, where it is free to be so; NaN if that leads nowhere.
+ * @param {number[]} way
+ * @param {number[]} low
+ * @param {number[]} high
+ * @param {number} length
+ */
+export function around(way, low, high, length) {
+  const free = way.map((part, i) => (low[i] < high[i] ? part : low[i]));
+  const size = Math.hypot(...free);
+  return free.map((part) => (length * part) / size);
 }
 
 /** @param {Vector3} at */

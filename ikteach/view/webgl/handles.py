@@ -20,7 +20,8 @@ STEP = 0.05  # [m] one press of an arrow key, on a figure of a human's size
 class Handles(Living, anywidget.AnyWidget):
     """Handles at the targets of a scene, which move `positions`.
 
-    Mouse, touch   drag a target in the plane that faces the camera, which stands still meanwhile
+    Mouse, touch   drag a target in the plane that faces the camera, which stands still meanwhile;
+                   that of a direction by its tip, round its joint
     Tab            chooses a target, or leaves the picture after the last one
     arrows         move it along the axes of the world that lie nearest to right and up in the
                    picture, Page Up and Page Down away and near, with Shift a tenth as far; they
@@ -39,6 +40,7 @@ class Handles(Living, anywidget.AnyWidget):
     places: Any = traitlets.List().tag(sync=True)
     low: Any = traitlets.List().tag(sync=True)
     high: Any = traitlets.List().tag(sync=True)
+    lengths: Any = traitlets.List().tag(sync=True)
     step = traitlets.Float().tag(sync=True)
     chosen = traitlets.Int(-1).tag(sync=True)
     alert = traitlets.Unicode().tag(sync=True)
@@ -60,6 +62,7 @@ class Handles(Living, anywidget.AnyWidget):
             places=scene.stage.places.tolist(),
             low=positions.low.tolist(),
             high=positions.high.tolist(),
+            lengths=positions.lengths.tolist(),
             step=STEP * unit,
         )
         self.on_msg(self._hear)

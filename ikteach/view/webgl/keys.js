@@ -80,9 +80,9 @@ export class Keys {
    * @param {KeyboardEvent} event
    */
   #push(arrow, { shiftKey, repeat }) {
-    const step = this.#step * (shiftKey ? 0.1 : 1);
-    const move = along(this.#scene.camera.matrixWorld.elements, arrow).map((part) => part * step);
     const { chosen } = this.#handles;
+    const step = this.#handles.stride(chosen, this.#step) * (shiftKey ? 0.1 : 1);
+    const move = along(this.#scene.camera.matrixWorld.elements, arrow).map((part) => part * step);
     const at = this.#handles.where(chosen).add(this.#scene.vector(...move));
     this.#handles.move(chosen, at, !repeat);
   }

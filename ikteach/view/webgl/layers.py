@@ -38,6 +38,12 @@ class LayerObjects:
             before, node.children = node.children, [objects.floor_grid(grid, dark)]
             close_all(*before)
 
+    @property
+    def by_row(self) -> list[three.Object3D]:
+        """List what moves as a whole, by its rows."""
+        rows = {how: thing for thing, how in self.moves if isinstance(how, int)}
+        return [rows[row] for row in sorted(rows)]
+
     def moves_from(self, row: int) -> list[Move]:
         """List the moves, with the layer's first row at `row`.
 

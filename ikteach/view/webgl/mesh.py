@@ -12,6 +12,7 @@ import pythreejs as three
 
 from ikteach.view.stage.colours import rgb
 from ikteach.view.stage.forms import STATIC, Mesh
+from ikteach.view.webgl.objects import THROUGH
 from ikteach.view.webgl.surfaces import surface
 
 Runs = list[list[int]]  # [row, points], for all points of a mesh
@@ -52,6 +53,7 @@ def fused(mesh: Mesh) -> tuple[three.Object3D, Runs]:
         _material(mesh, wires, bool(normals)),
         frustumCulled=False,
         visible=STATIC in rows,
+        renderOrder=THROUGH if mesh.through else 0,
     )
     return thing, _runs(rows, np.diff(firsts).tolist())
 
@@ -59,6 +61,8 @@ def fused(mesh: Mesh) -> tuple[three.Object3D, Runs]:
 def _material(mesh: Mesh, wires: bool, shaded: bool) -> three.Material:
     """Make how the mesh looks: of lines, shaded, or of one brightness."""
     looks: dict[str, object] = {"vertexColors": "VertexColors"}
+    if mesh.through:
+        looks |= {"transparent": True, "depthTest": False}  # drawn last
     if mesh.opacity < 1:
         looks |= {"transparent": True, "opacity": mesh.opacity, "depthWrite": mesh.hides}
     if wires:

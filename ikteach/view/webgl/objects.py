@@ -8,7 +8,10 @@ import pythreejs as three
 
 from ikteach.markup import brief
 from ikteach.view.stage.colours import paper
-from ikteach.view.stage.forms import Ball, Box, Form, Grid, Label, Mesh
+from ikteach.view.stage.forms import Arrow, Ball, Box, Form, Grid, Label, Mesh
+from ikteach.view.webgl.surfaces import surface
+
+THROUGH = 5  # in the order of drawing, of what is seen through all else
 
 
 def node(children: Sequence[three.Object3D] = ()) -> three.Group:
@@ -43,18 +46,26 @@ def floor_grid(form: Grid, dark: bool) -> three.GridHelper:
 
 
 def marks(mesh: Mesh) -> list[three.Mesh]:
-    """Make an object per ball or box of a mesh.
+    """Make an object per ball, box or arrow of a mesh.
 
     Marks of one shape share it, and marks of one colour share how they look.
     """
     shape = cache(_geometry)
 
     @cache
-    def look(colour: str) -> three.Material:
-        return three.MeshLambertMaterial(color=colour, transparent=True, opacity=mesh.opacity)
+    def look(colour: str, shaded: bool) -> three.Material:
+        kind = three.MeshLambertMaterial if shaded else three.MeshBasicMaterial
+        return kind(
+            color=colour, transparent=True, opacity=mesh.opacity, depthTest=not mesh.through
+        )
 
     return [
-        three.Mesh(shape(piece.form), look(piece.colour), matrixAutoUpdate=False)
+        three.Mesh(
+            shape(piece.form),
+            look(piece.colour, not isinstance(piece.form, Arrow)),
+            matrixAutoUpdate=False,
+            renderOrder=THROUGH if mesh.through else 0,
+        )
         for piece in mesh.pieces
     ]
 
@@ -64,6 +75,14 @@ def _geometry(form: Form) -> three.BufferGeometry:
         return three.BoxBufferGeometry(*[2 * form.half] * 3)
     if isinstance(form, Ball):
         return three.SphereBufferGeometry(form.radii[0], 16, 12)
+    if isinstance(form, Arrow):
+        points, joined, _ = surface(form, (0, 0))
+        return three.BufferGeometry(
+            attributes={
+                "position": three.BufferAttribute(points.astype(np.float32), normalized=False)
+            },
+            index=three.BufferAttribute(joined.astype(np.uint32).ravel(), normalized=False),
+        )
     raise TypeError(f"nobody can take hold of {form}")
 
 

@@ -6,22 +6,24 @@ const LATE = 2000; // [ms] after which a target goes where the kernel says, if t
 
 export class Pins {
   /** @type {Map<number, { at: Vector3, until: number, seen: Vector3 | null }>} */
-  #pins = new Map(); // node: where it is shown, and where the kernel's frame had it last
+  #pins = new Map(); // node: where it is shown, from its origin, and where the kernel had it last
   #scene;
   #nodes;
+  #lengths;
   #count;
   #hair;
 
   /**
    * @param {Scene} scene
    * @param {Model[]} nodes of targets, those of one figure after those of another
-   * @param {number} count of targets of one figure
+   * @param {number[]} lengths of the targets of one figure that are directions [m], 0 of points
    * @param {number} hair [m] so near, a frame has caught up
    */
-  constructor(scene, nodes, count, hair) {
+  constructor(scene, nodes, lengths, hair) {
     this.#scene = scene;
     this.#nodes = nodes;
-    this.#count = count;
+    this.#lengths = lengths;
+    this.#count = lengths.length;
     this.#hair = hair;
   }
 
@@ -30,7 +32,23 @@ export class Pins {
    * @param {number} node
    */
   where(node) {
-    return this.#pins.get(node)?.at.clone() ?? this.#framed(node);
+    return this.#from(node).add(this.origin(node));
+  }
+
+  /**
+   * The length of a direction, 0 of a point.
+   * @param {number} node
+   */
+  length(node) {
+    return this.#lengths[node % this.#count];
+  }
+
+  /**
+   * Where a direction begins, from which its arrow is a matrix's second column; of a point 0.
+   * @param {number} node
+   */
+  origin(node) {
+    return this.length(node) ? this.#place(node) : this.#scene.vector();
   }
 
   /**
@@ -42,7 +60,7 @@ export class Pins {
     const move = at.clone().sub(this.where(node));
     const until = performance.now() + LATE;
     for (let other = node % this.#count; other < this.#nodes.length; other += this.#count)
-      this.#pins.set(other, { at: this.where(other).add(move), until, seen: null });
+      this.#pins.set(other, { at: this.#from(other).add(move), until, seen: null });
     this.#scene.redraw();
   }
 
@@ -59,7 +77,7 @@ export class Pins {
       if (!held && (met || performance.now() > pin.until)) {
         this.#pins.delete(node);
       } else {
-        this.#nodes[node].obj.matrix.setPosition(pin.at);
+        this.#put(node, pin.at);
         this.#nodes[node].obj.matrixWorldNeedsUpdate = true;
         pin.seen = pin.at.clone();
       }
@@ -72,7 +90,47 @@ export class Pins {
   }
 
   /** @param {number} node */
+  #from(node) {
+    return this.#pins.get(node)?.at.clone() ?? this.#framed(node);
+  }
+
+  /** @param {number} node */
   #framed(node) {
+    if (!this.length(node)) return this.#place(node);
+    const [x, y, z] = this.#nodes[node].obj.matrix.elements.slice(4, 7);
+    return this.#scene.vector(x, y, z);
+  }
+
+  /** @param {number} node */
+  #place(node) {
     return this.#scene.position(this.#nodes[node].obj.matrix);
   }
+
+  /**
+   * @param {number} node
+   * @param {Vector3} at
+   */
+  #put(node, at) {
+    const { matrix } = this.#nodes[node].obj;
+    if (!this.length(node)) matrix.setPosition(at);
+    else
+      stick(at.toArray()).forEach((part, i) => {
+        matrix.elements[i] = part;
+      });
+  }
+}
+
+/**
+ * The first three columns, of four each, of the matrix that lays (0, 1, 0) along a vector: as
+ * `sticks` of body/rotation.py makes them.
+ * @param {number[]} along
+ */
+export function stick(along) {
+  const length = Math.hypot(...along);
+  const [x, y, z] = along.map((part) => part / length);
+  const sign = y < 0 ? -1 : 1;
+  const w = [x, y + sign, z]; // wᵀw = 2 (1 + |y|)
+  const column = (/** @type {number} */ i) =>
+    w.map((part, row) => (row === i ? 1 : 0) - (part * w[i]) / (1 + Math.abs(y)));
+  return [...column(0).map((part) => sign * part), 0, ...along, 0, ...column(2), 0];
 }

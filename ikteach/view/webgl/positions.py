@@ -6,7 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ikteach.arrays import Array, ArrayLike
+from ikteach.arrays import TINY, Array, ArrayLike
 from ikteach.checks import numbers
 from ikteach.view.stage.lengths import METRE, Lengths, digits_of
 
@@ -78,6 +78,7 @@ class Positions:
     names      of the targets
     keeper     keeps the targets; here is nothing but their ranges
     low, high  (k, 3) the range of each coordinate [m]
+    lengths    (k,) ℓ [m] of a direction, whose target turns and stays as long; 0 of a point
     unit       in which a person reads lengths
     step       the smallest difference that a person is to see [m]
     undo       undoes instead of the keeper, if whoever shows it has more to do then
@@ -91,6 +92,7 @@ class Positions:
         keeper: TargetKeeper,
         low: ArrayLike,
         high: ArrayLike,
+        lengths: ArrayLike = 0.0,
         *,
         unit: Lengths = METRE,
         step: float = 0.01,
@@ -104,12 +106,16 @@ class Positions:
                 f"{shape[0]} targets need positions {shape}, not {keeper.targets.shape}"
             )
         self.low, self.high = _each("low", low, shape), _each("high", high, shape)
+        self.lengths = np.broadcast_to(numbers("lengths", lengths), len(self.names))
         self._listeners: list[Callable[[int, Array], None]] = []
 
     @property
     def now(self) -> Array:
         """Where the targets are, within their ranges, (k, 3) [m]."""
-        return np.clip(self.keeper.targets, self.low, self.high)
+        targets = self.keeper.targets
+        size = np.linalg.norm(targets, axis=-1)
+        stretch = np.where(self.lengths > 0, self.lengths / np.maximum(size, TINY), 1.0)
+        return np.clip(stretch[:, None] * targets, self.low, self.high)
 
     def on_change(self, tell: Callable[[int, Array], None]) -> None:
         """Call tell(index, position (3,)) after each move.
@@ -119,13 +125,13 @@ class Positions:
         self._listeners.append(tell)
 
     def move(self, index: int, position: ArrayLike, *, going_on: bool = False) -> None:
-        """Move one target within its range.
+        """Move one target within its range, or turn a direction's.
 
-        ValueError with the range if it would leave it.
+        ValueError with the range if it would leave it, or if no direction is given.
 
         `going_on` says that it is part of the move before: one `undo` takes back a whole drag.
         """
-        new = np.asarray(position, dtype=float)
+        new = self._turned(index, np.asarray(position, dtype=float))
         self.check(index, new)
         self.keeper.aim(index, new, going_on=going_on)
         self._moved(index)
@@ -135,8 +141,29 @@ class Positions:
 
         It stops at the edge.
         """
-        inside = np.clip(np.asarray(position, dtype=float), self.low[index], self.high[index])
-        self.move(index, inside, going_on=going_on)
+        low, high, at = self.low[index], self.high[index], np.asarray(position, dtype=float)
+        if self.lengths[index]:  # as far round as the tip, when that is drawn in to its sphere
+            at = np.where(low < high, at, low)
+            at = at if at.any() else self.now[index]
+        else:
+            at = np.clip(at, low, high)
+        self.move(index, at, going_on=going_on)
+
+    def coordinate(self, index: int, axis: int, value: float) -> Array:
+        """Return where a target goes as one of its coordinates changes, (3,) [m].
+
+        That of a direction turns: its others then have what is left of its length.
+        """
+        at, length = self.now[index], self.lengths[index]
+        at[axis] = value
+        free = self.low[index] < self.high[index]
+        others = np.flatnonzero(free & (np.arange(3) != axis))
+        if abs(value) <= length and len(others):
+            if np.linalg.norm(at[others]) <= 1e-9 * length:
+                at[others[0]] = 1.0  # at a pole any way is as good
+            left = np.sqrt(length**2 - value**2)
+            at[others] *= left / np.linalg.norm(at[others])
+        return at
 
     def undo(self) -> str:
         """Take the last change back, and say so in a sentence."""
@@ -153,7 +180,17 @@ class Positions:
     def words(self, index: int) -> str:
         """Say where a target is, to be read or heard."""
         x, y, z = (self._said(value) for value in self.now[index])
-        return f"{self.names[index]}: x {x}, y {y}, z {z} {self.unit.name}"
+        points = "points to " if self.lengths[index] else ""
+        return f"{self.names[index]}: {points}x {x}, y {y}, z {z} {self.unit.name}"
+
+    def _turned(self, index: int, at: Array) -> Array:
+        """Give the target of a direction its length; ValueError if it points nowhere."""
+        length = self.lengths[index]
+        if not length or at.shape != (3,) or not np.isfinite(at).all():
+            return at
+        if not at.any():
+            raise ValueError(f"{self.names[index]} is a direction, and (0, 0, 0) is none")
+        return length * (at / np.linalg.norm(at))
 
     def _said(self, length: float) -> str:
         return self.unit.number(length, self._digits)

@@ -18,7 +18,6 @@ from ikteach.view.raster.still import png
 from ikteach.view.stage.basics import BASICS, TargetMarks
 from ikteach.view.stage.colours import effector_colour, paper
 from ikteach.view.stage.layers import LAYERS
-from ikteach.view.stage.lengths import Lengths
 from ikteach.view.stage.stage import FIELD, About, Now, Stage
 from ikteach.view.webgl import objects
 from ikteach.view.webgl.cameras import Cameras
@@ -48,8 +47,9 @@ class Scene(Living):
     targets  the objects of the targets, figure by figure
 
     Left targets are balls, right ones boxes, so that colour is not the only sign; a grey rod joins
-    each effector to its target. A figure in a plane stands before a wall of squares instead of on
-    a floor. Several figures wear the colours of `colours.EFFECTOR_COLOURS`, in their order.
+    each effector to its target. A direction is a rod from its joint, its target an arrow. A figure
+    in a plane stands before a wall of squares instead of on a floor. Several figures wear the
+    colours of `colours.EFFECTOR_COLOURS`, in their order.
     """
 
     def __init__(
@@ -73,11 +73,11 @@ class Scene(Living):
         self._groups: dict[str, three.Group] = {}
         self._on: set[str] = set()
         self._dark, self._chosen = dark, dark
-        (self.targets,) = (one.things for one in self._basics if isinstance(one.layer, TargetMarks))
+        (marks,) = (one for one in self._basics if isinstance(one.layer, TargetMarks))
+        self.targets = marks.by_row
         self._furnish(size)
         self._drawing = Drawing(stage, size)
         self.look_from(stage.side)
-        self._length = Lengths.of(tree, effectors)
         colours = [[name, effector_colour(i)] for i, name in enumerate(effectors.names)]
         self.driver = Driver(self.renderer, description=stage.words, effectors=colours)
         self.driver.on_page, self.driver.on_act = self._greet, self._perform
@@ -230,8 +230,7 @@ class Scene(Living):
     def _far(self) -> list[str]:
         """Say how far each effector of the first figure is from its target."""
         assert self.now is not None
-        gaps = self.now.targets[0] - self.now.effectors[0]
-        return [self._length(float(gap)) for gap in np.linalg.norm(gaps, axis=-1)]
+        return self.stage.far(self.now)[0]
 
     def _drawn(self) -> list[LayerObjects]:
         """List the layers that are drawn, in the order of their rows."""

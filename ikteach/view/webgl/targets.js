@@ -15,7 +15,7 @@ function render({ model, el }) {
     [..."xyz"].map((letter, axis) => new Pair(model, post, target, axis, `${name} ${letter}`)),
   );
   const rows = names.map((name, target) =>
-    makeRow(name, model.get("colours")[target], pairs[target]),
+    makeRow(name, model.get("marks")[target], model.get("colours")[target], pairs[target]),
   );
   const headings = [`target [${model.get("unit")}]`, ...HEADINGS];
   const head = headings.map((title) => element("th", { scope: "col" }, title));
@@ -123,11 +123,12 @@ class Pair {
 
 /**
  * @param {string} name
+ * @param {string} shape
  * @param {string} colour
  * @param {Pair[]} pairs
  */
-function makeRow(name, colour, pairs) {
-  const mark = element("span", { "aria-hidden": true }, name.endsWith(".r") ? "■ " : "● ");
+function makeRow(name, shape, colour, pairs) {
+  const mark = element("span", { "aria-hidden": true }, `${shape} `);
   mark.style.color = colour;
   const cells = pairs.map(({ slider, box }) => element("td", {}, slider, box));
   return element("tr", {}, element("th", { scope: "row" }, mark, name), ...cells);

@@ -10,8 +10,9 @@ import traitlets
 from ikteach.arrays import Array, ArrayLike
 from ikteach.checks import numbers
 from ikteach.view.stage.colours import effector_colour
+from ikteach.view.stage.forms import kinds
 from ikteach.view.stage.lengths import Lengths, digits_of, round_step
-from ikteach.view.stage.stage import View
+from ikteach.view.stage.stage import Stage, View
 from ikteach.view.webgl.handles import Handles
 from ikteach.view.webgl.positions import Moves, Positions, TargetKeeper
 from ikteach.view.webgl.scene import Scene
@@ -20,6 +21,7 @@ from ikteach.view.widgets.actor import Actor, message_of
 from ikteach.view.widgets.closing import Living
 from ikteach.view.widgets.page import script, style
 
+MARKS = {"ball": "●", "box": "■", "arrow": "➤"}
 ROOM = 1.5  # [m] how far a target of a human may go from where it starts, each way
 
 
@@ -29,8 +31,9 @@ class Targets(Living, anywidget.AnyWidget):
     A live scene has handles too.
 
     scene      shows them, once a listener of `on_change` has it do so
-    start      where the targets are at first, (k, 3) [m]; not if there is a session
-    low, high  ranges [m], one number or (k, 3); None: as far as `ROOM` from the start
+    start      where the targets are at first, (k, 3) [m]; not if there is a session. That of a
+               direction is a vector, and turns whatever is done to it
+    low, high  ranges [m] of points, one number or (k, 3); None: as far as `ROOM` from the start
     session    keeps the targets and undoes their moves, as a `Session` does; if none is given, the
                panel does so itself
     undo       undoes instead of the session, if whoever shows it has more to do then
@@ -43,6 +46,7 @@ class Targets(Living, anywidget.AnyWidget):
     _esm, _css = script("view/webgl/targets.js"), style("view/webgl/targets.css")
     names = traitlets.List(traitlets.Unicode()).tag(sync=True)
     colours = traitlets.List(traitlets.Unicode()).tag(sync=True)
+    marks = traitlets.List(traitlets.Unicode()).tag(sync=True)
     low: Any = traitlets.List().tag(sync=True)
     high: Any = traitlets.List().tag(sync=True)
     values: Any = traitlets.List().tag(sync=True)
@@ -77,8 +81,7 @@ class Targets(Living, anywidget.AnyWidget):
         self._model = Positions(
             names,
             session or Moves(at.copy()),
-            at - room if low is None else low,
-            at + room if high is None else high,
+            *_ranges(stage, at - room if low is None else low, at + room if high is None else high),
             unit=unit,
             step=step * unit.metres,
             undo=undo,
@@ -91,6 +94,7 @@ class Targets(Living, anywidget.AnyWidget):
         super().__init__(
             names=list(names),
             colours=[effector_colour(i) for i in range(len(names))],
+            marks=[MARKS[kind] for kind in kinds(names, stage.effectors.w)],
             low=self._model.low.tolist(),
             high=self._model.high.tolist(),
             values=self._model.now.tolist(),
@@ -159,9 +163,11 @@ class Targets(Living, anywidget.AnyWidget):
 
     def _set(self, content: dict[str, Any]) -> None:
         index, axis, value = int(content["target"]), int(content["axis"]), content["value"]
-        position = self.positions[index]
-        position[axis] = np.nan if value is None else float(value)
-        if not content.get("typed"):
+        new, typed = np.nan if value is None else float(value), content.get("typed")
+        if not typed:
+            new = float(np.clip(new, self._model.low[index, axis], self._model.high[index, axis]))
+        position = self._model.coordinate(index, axis, new)
+        if not typed:
             self._model.drag(index, position, going_on=not content["fresh"])
             return
         try:
@@ -172,3 +178,13 @@ class Targets(Living, anywidget.AnyWidget):
             self.send({"again": True})  # the box shows once more what is
         else:
             self._model.move(index, position)
+
+
+def _ranges(stage: Stage, low: ArrayLike, high: ArrayLike) -> tuple[ArrayLike, ArrayLike, Array]:
+    """Give the tips of directions the ranges of a sphere: low, high, and ℓ (k,), 0 of points."""
+    ends = stage.effectors
+    lengths = np.where(ends.w, 0, np.linalg.norm(ends.offsets, axis=-1))
+    if not ends.directed:
+        return low, high, lengths
+    point, sphere = ends.w[:, None] == 1, lengths[:, None] * stage.free
+    return np.where(point, low, -sphere), np.where(point, high, sphere), lengths

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from ipywidgets.widgets.widget import _instances
 
-from ikteach.body import figures
+from ikteach.body import Effectors, figures, forward, locate
 from ikteach.motion.live.session import Session
 from ikteach.view import Scene, StillScene
 from ikteach.view.webgl.positions import Moves
@@ -252,3 +252,108 @@ def test_undo_move_takes_back_whatever_was_changed_last(walker):
     said = [message["say"] for message in sent if "say" in message]
     assert said == ["Taken back.", "There is nothing to take back."]
     assert panel.alert == ""
+
+
+FREE = figures.walker()
+WAYS = {name: i for i, name in enumerate(FREE.effectors.names) if not FREE.effectors.w[i]}
+UP = WAYS["pelvis.up"]
+LONG = np.linalg.norm(FREE.effectors.offsets[UP])  # ℓ
+
+
+@pytest.fixture
+def ways():
+    scene = Scene(*FREE)
+    panel = Targets(scene, locate(forward(FREE.tree, FREE.tree.rest), FREE.effectors))
+    yield panel
+    panel.close()
+    scene.close()
+
+
+def test_the_target_of_a_direction_turns_whatever_moves_it(ways):
+    grip(ways, UP, [3.0, 4.0, 0.0])
+    assert ways.positions[UP] == pytest.approx(LONG * np.array([0.6, 0.8, 0]))
+    grip(ways, UP, [0, 0, 0])  # nowhere: it stays
+    assert ways.positions[UP] == pytest.approx(LONG * np.array([0.6, 0.8, 0]))
+    slide(ways, UP, 0, -0.6 * LONG)
+    assert ways.positions[UP] == pytest.approx(LONG * np.array([-0.6, 0.8, 0]))
+    slide(ways, UP, 2, 0.6 * LONG, typed=True)
+    assert ways.positions[UP] == pytest.approx(LONG * np.array([-0.48, 0.64, 0.6]))
+    ways.move(UP, [0, 0, -7])
+    assert ways.positions[UP] == pytest.approx([0, 0, -LONG])
+    slide(ways, UP, 2, 0.0)  # from a pole, any way
+    assert np.linalg.norm(ways.positions[UP]) == pytest.approx(LONG)
+    assert ways.positions[UP, 2] == 0
+    assert np.array(ways.values) == pytest.approx(ways.positions)
+    ways.undo()
+    assert ways.positions[UP] == pytest.approx([0, 0, -LONG])
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_any_series_of_slides_keeps_the_length(ways, axis):
+    for value in np.random.default_rng(axis).uniform(-1.2, 1.2, 60) * LONG:
+        slide(ways, UP, axis, value)
+        at = ways.positions[UP]
+        assert at[axis] == pytest.approx(np.clip(value, -LONG, LONG))
+        assert np.linalg.norm(at) == pytest.approx(LONG)
+        axis = (axis + 1) % 3
+
+
+@pytest.mark.parametrize("value", [1.01 * LONG, -9, None])
+def test_a_typed_number_longer_than_the_direction_is_refused(ways, value):
+    before = ways.positions
+    slide(ways, UP, 1, value, typed=True)
+    assert f"Y of pelvis.up goes from -{LONG:.2f} to {LONG:.2f} m" in ways.alert
+    assert np.array_equal(ways.positions, before)
+
+
+def test_a_direction_needs_a_way_to_point(ways):
+    with pytest.raises(ValueError, match=r"pelvis.up is a direction, and \(0, 0, 0\) is none"):
+        ways.move(UP, [0, 0, 0])
+
+
+def test_the_words_say_that_a_direction_points(ways):
+    grip(ways, UP, [0, 0, 1])
+    ways.handles._hear(None, {"undo": True}, [])
+    grip(ways, UP, [0, 0, 1])
+    assert ways._model.words(UP) == f"pelvis.up: points to x 0.00, y 0.00, z {LONG:.2f} m"
+    assert ways._model.words(0).startswith("pelvis: x ")
+    assert [ways.marks[i] for i in WAYS.values()] == ["➤", "➤"]
+
+
+def test_a_direction_of_a_planar_figure_turns_in_its_plane():
+    tree = figures.planar_arm(2).tree
+    ends = Effectors.of(tree, {}, directions={"gaze": ("joint2", (0, 0.5, 0))})
+    scene = Scene(tree, ends)
+    panel = Targets(scene, [[0, 0.5, 0]])
+    grip(panel, 0, [3, 4, 12])
+    assert panel.positions[0] == pytest.approx([0.3, 0.4, 0])
+    slide(panel, 0, 0, 0.4)
+    assert panel.positions[0] == pytest.approx([0.4, 0.3, 0])
+    panel.close()
+    scene.close()
+
+
+def test_a_session_hears_of_a_direction_as_a_vector():
+    session = Session(figure=FREE)
+    scene = Scene(*FREE)
+    panel = Targets(scene, session=session, low=-1.5, high=1.5)
+    grip(panel, UP, [0, 3, 4])
+    assert session.targets[UP] == pytest.approx(LONG * np.array([0, 0.6, 0.8]))
+    panel.close()
+    scene.close()
+
+
+def test_the_page_has_targets_in_the_order_of_the_effectors():
+    tree, ends = FREE
+    scene = Scene(tree, ends, names=("a", "b"))
+    here = locate(forward(tree, tree.rest), ends)
+    scene.show(tree.rest, here)
+    (plan,) = (one for one in scene._basics if one.layer.name == "targets")
+    rows = plan.layer.place(scene.now)
+    moved = {id(thing): row for thing, row in plan.moves}
+    assert [moved[id(thing)] for thing in scene.targets] == list(range(2 * len(ends)))
+    assert len(rows) == 2 * len(ends)
+    panel = Targets(scene, here)
+    assert panel.handles.lengths == pytest.approx(np.where(ends.w, 0, LONG))
+    panel.close()
+    scene.close()
