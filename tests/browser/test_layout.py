@@ -45,7 +45,7 @@ FIGURES = {
     ),
     "11": ("from ikteach.view.chapters.beyond import WalksPlayer as Made", "", SCENE),
 }
-BESIDE = "00 02 04 07 08 09 10 11 svd".split()  # controls stand beside the picture
+BESIDE = [name for name in FIGURES if FIGURES[name][2] != CHART and name != "01"]
 
 
 class Size(NamedTuple):
