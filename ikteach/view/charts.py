@@ -88,7 +88,9 @@ def heat(table: pd.DataFrame, *, title: str, unit: str) -> Still:
     down, across = np.nonzero(abs(values) < ZERO)
     axes.plot(across, down, ".", color="0.6", ms=3)
     axes.set_title(title)
-    figure.colorbar(image, ax=axes, label=unit, shrink=0.9)
+    scale = figure.colorbar(image, ax=axes, label=unit, shrink=0.9)
+    if np.nanmin(values) >= 0:
+        scale.ax.set_ylim(0, None)  # lengths have no half below 0
     row, column = (int(i) for i in np.unravel_index(np.nanargmax(abs(values)), values.shape))
     words = (
         f"{title}: {rows} rows by {columns} columns, {len(down)} of {values.size} entries are 0. "

@@ -1,6 +1,7 @@
 """What the chapters say to try: each sentence has a button, and the button does it."""
 
 import ast
+import re
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from ikteach.view.chapters.transpose import slope_bench
 from ikteach.view.widgets.closing import close_all
 
 ROOT = Path(__file__).parents[2]
+ROUNDED = re.compile(r"\S+e-1[3-9]|\S+e-[2-9]\d|-0\.0+(?!\d)")  # numbers that stand for 0
 
 
 def cells() -> list[Any]:
@@ -74,6 +76,7 @@ def test_every_button_of_a_chapter_moves_its_figure(code: str) -> None:
         assert made.status.said
         assert figure.status.wrong == ""
         assert off_the_grid(figure, code) == {}
+        assert ROUNDED.findall(getattr(figure, "words", "")) == []
         seen.append(state(figure))
     assert len(set(seen)) >= len(seen) - 1  # the first may be how the figure starts
     assert len(seen) > 1

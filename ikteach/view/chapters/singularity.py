@@ -39,8 +39,9 @@ class BendBench(Bench):
         def show(*, bend: int, way: int) -> Shown:
             theta = np.radians([0, bend])
             frames = forward(tree, theta)
-            J, s = jacobian(tree, frames, effectors), locate(frames, effectors)
-            e = SIZE * np.array([np.cos(np.radians(way)), np.sin(np.radians(way)), 0])
+            # Rounded, so that a right angle is one, and a straight arm quite straight.
+            J, s = jacobian(tree, frames, effectors).round(12), locate(frames, effectors)
+            e = SIZE * np.array([np.cos(np.radians(way)), np.sin(np.radians(way)), 0]).round(12)
             sigma = np.linalg.svdvals(J)
             steps = {name: solver(J, e) for name, solver in SOLVERS.items()}
             lengths = {name: float(np.linalg.norm(step)) for name, step in steps.items()}

@@ -104,8 +104,9 @@ class SvdBench(Bench):
 
 def _told(J: Array, seen: Image, bones: Array, dtheta: Array) -> Any:
     """Draw Δθ and its parts along v_i, and where J takes them; the same in words."""
-    a, b = along(seen, dtheta)
-    first, moved = a * seen.V[0], a * seen.sigma[0] * seen.U[0]
+    parts = along(seen, dtheta)
+    first, moved = parts[0] * seen.V[0], parts[0] * seen.sigma[0] * seen.U[0]
+    a, b = parts.round(2) + 0.0  # no −0
     goes = J[:2] @ dtheta
     left = [*_circle(seen), _path(first, dtheta), _arrow(dtheta, RED, "Δθ", width=4)]
     right = [*_ellipse(seen, bones), _path(moved, goes), _arrow(goes, RED, "JΔθ", width=4)]
@@ -140,4 +141,4 @@ def _path(first: Array, to: Array) -> Stroke:
 
 
 def _pair(values: Array) -> str:
-    return "({:.2f}, {:.2f})".format(*(np.asarray(values) + 0.0)).replace("-", "−")
+    return "({:.2f}, {:.2f})".format(*(np.round(values, 2) + 0.0)).replace("-", "−")  # no −0

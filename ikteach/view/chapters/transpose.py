@@ -52,7 +52,7 @@ class TransposePlot:
 
     def _draw_parabola(self, axes: Axes) -> None:
         axes.set(xlim=(0, 3), ylim=(0, 2.5), xlabel="gain: α as a share of the best α")
-        axes.set_ylabel("squared error after the step, share of now")
+        axes.set_ylabel("squared error, after / before the step")
         axes.set_title("the error parabola")
         axes.grid(alpha=0.3)
         axes.axhline(1, color="0.3", lw=1)
