@@ -2,7 +2,8 @@
 
     python binder/links.py https://github.com/OWNER/REPOSITORY [--hub https://HUB] [--write]
 
-prints them as Markdown; with --write it puts them into README.md, between its two marks.
+prints them as Markdown; with --write it puts them into README.md, and the repository's address into
+pyproject.toml and CITATION.cff, each between two marks. No address is written anywhere else.
 """
 
 import argparse
@@ -13,8 +14,11 @@ from pathlib import Path
 from urllib.parse import quote, urlencode, urlsplit
 
 ROOT = Path(__file__).resolve().parents[1]
-README = ROOT / "README.md"
+README, PROJECT, CITATION = (
+    ROOT / name for name in ("README.md", "pyproject.toml", "CITATION.cff")
+)
 FIRST, LAST = "<!-- links by binder/links.py -->\n", "<!-- end of links -->\n"
+PLAIN = "# links by binder/links.py\n", "# end of links\n"  # the marks where no HTML is read
 BADGE = "https://mybinder.org/badge_logo.svg"
 PROVIDERS = {"github.com": "gh", "gitlab.com": "gl"}  # Binder's short names
 
@@ -93,13 +97,26 @@ def markdown(link: Callable[[str], str], start: str, root: Path = ROOT) -> str:
     return "\n\n".join(lines) + "\n"
 
 
-def write(text: str, readme: Path) -> None:
-    """Put the links into the README between its marks; nothing else in it changes."""
-    before, first, rest = readme.read_text(encoding="utf-8").partition(FIRST)
-    _, last, after = rest.partition(LAST)
+def urls(address: str) -> str:
+    """List the addresses that a package index shows, as TOML."""
+    repository(address)
+    home = address.rstrip("/").removesuffix(".git")
+    pages = {
+        "Homepage": home,
+        "Issues": f"{home}/issues",
+        "Changelog": f"{home}/blob/HEAD/CHANGELOG.md",
+    }
+    return "".join(f'{name} = "{page}"\n' for name, page in pages.items())
+
+
+def write(text: str, path: Path) -> None:
+    """Put lines into a file between its marks; nothing else in it changes."""
+    first, last = (FIRST, LAST) if path.suffix == ".md" else PLAIN
+    before, first, rest = path.read_text(encoding="utf-8").partition(first)
+    _, last, after = rest.partition(last)
     if not last:
-        raise ValueError(f"{readme} lacks the two marks between which the links go")
-    readme.write_text(f"{before}{first}{text}{last}{after}", encoding="utf-8")
+        raise ValueError(f"{path} lacks the two marks between which the links go")
+    path.write_text(f"{before}{first}{text}{last}{after}", encoding="utf-8")
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -107,7 +124,7 @@ def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Links that open the course without installing.")
     parser.add_argument("address", help="of the repository: https://github.com/OWNER/REPOSITORY")
     parser.add_argument("--hub", help="of your JupyterHub, which has this package and nbgitpuller")
-    parser.add_argument("--write", action="store_true", help="write them into README.md")
+    parser.add_argument("--write", action="store_true", help="write them into the files")
     options = parser.parse_args(argv)
     try:
         badge = f"![Open the course on Binder]({BADGE})"
@@ -117,6 +134,8 @@ def main(argv: list[str] | None = None) -> int:
             text += "\n" + markdown(lambda page: on_hub(options.hub, options.address, page), start)
         if options.write:
             write(text, README)
+            write(urls(options.address), PROJECT)
+            write(f'repository-code: "{options.address}"\n', CITATION)
         else:
             print(text, end="")
     except ValueError as error:

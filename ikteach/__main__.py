@@ -12,6 +12,8 @@ OPEN = "ikteach.serve.lab"
 COMMANDS = {  # each a module with main(argv), which gives the exit code
     "build": "ikteach.publish.builds",
     "collect": "ikteach.publish.collect",
+    "docs": "ikteach.publish.docs",
+    "film": "ikteach.publish.race",
     "grade": "ikteach.publish.grade",
     "lecture": "ikteach.serve.lecture",
     "site": "ikteach.publish.site",

@@ -92,17 +92,21 @@ def opened(text: str) -> list[str]:
 
 
 @pytest.fixture
-def readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    copy = tmp_path / "README.md"
-    copy.write_text(README.read_text(encoding="utf-8"), encoding="utf-8")
-    monkeypatch.setattr(links, "README", copy)
-    return copy
+def written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Path]:
+    """Copies of the files into which links are written."""
+    copies = {}
+    for name in ("README", "PROJECT", "CITATION"):
+        original = getattr(links, name)
+        copies[name] = tmp_path / original.name
+        copies[name].write_text(original.read_text(encoding="utf-8"), encoding="utf-8")
+        monkeypatch.setattr(links, name, copies[name])
+    return copies
 
 
-def test_links_are_written_into_the_readme_and_lead_to_files(readme: Path) -> None:
+def test_links_are_written_into_the_readme_and_lead_to_files(written: dict[str, Path]) -> None:
     assert links.main([ADDRESS, "--write"]) == 0
-    written = readme.read_text(encoding="utf-8")
-    before, _, rest = written.partition(links.FIRST)
+    readme = written["README"].read_text(encoding="utf-8")
+    before, _, rest = readme.partition(links.FIRST)
     made, _, after = rest.partition(links.LAST)
     kept = README.read_text(encoding="utf-8")
     assert kept.startswith(before + links.FIRST)
@@ -113,8 +117,23 @@ def test_links_are_written_into_the_readme_and_lead_to_files(readme: Path) -> No
     assert {f"notebooks/{file.name}" for file in (ROOT / "notebooks").glob("*.ipynb")} < set(pages)
     for page in pages + opened(kept):
         assert (ROOT / page).is_file(), page
+    first = {name: path.read_text(encoding="utf-8") for name, path in written.items()}
     assert links.main([ADDRESS, "--write"]) == 0
-    assert readme.read_text(encoding="utf-8") == written
+    assert {name: path.read_text(encoding="utf-8") for name, path in written.items()} == first
+
+
+def test_the_address_is_written_where_an_index_and_a_citation_look(
+    written: dict[str, Path],
+) -> None:
+    assert links.main([f"{ADDRESS}.git", "--write"]) == 0
+    project = tomllib.loads(written["PROJECT"].read_text(encoding="utf-8"))["project"]
+    assert project["urls"]["Homepage"] == ADDRESS
+    assert project["urls"]["Issues"] == f"{ADDRESS}/issues"
+    for page in project["urls"].values():
+        _, _, file = page.partition("/blob/HEAD/")
+        assert not file or (ROOT / file).is_file()
+    assert f'repository-code: "{ADDRESS}.git"\n' in written["CITATION"].read_text("utf-8")
+    assert ADDRESS not in (ROOT / "pyproject.toml").read_text("utf-8")
 
 
 def test_a_hub_s_links_fetch_the_repository_and_open_it(capsys: pytest.CaptureFixture[str]) -> None:
@@ -160,8 +179,9 @@ def test_a_wrong_address_is_named(
 
 
 def test_a_readme_without_marks_is_left_alone(
-    readme: Path, capsys: pytest.CaptureFixture[str]
+    written: dict[str, Path], capsys: pytest.CaptureFixture[str]
 ) -> None:
+    readme = written["README"]
     readme.write_text("Mine.\n", encoding="utf-8")
     assert links.main([ADDRESS, "--write"]) == 1
     assert "marks" in capsys.readouterr().err

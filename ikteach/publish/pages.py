@@ -1,8 +1,10 @@
 """A chapter as a page of HTML that needs no network: run, with pictures and MathML."""
 
+import asyncio
 import re
 from collections.abc import Mapping
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import nbformat
@@ -42,17 +44,24 @@ def runner(notebook: Any, folder: Path, **options: Any) -> NotebookClient:
     return NotebookClient(notebook, resources=resources, extra_arguments=quiet, **options)
 
 
-def page(path: Path, titles: Mapping[str, str]) -> str:
-    """Run the notebook at `path`, and make its page.
+async def executed(path: Path) -> Any:
+    """Run the notebook at `path`, with stills for live outputs.
 
-    It runs in its own folder. nbclient's CellExecutionError if a cell fails.
+    It runs in an empty folder. nbclient's CellExecutionError if a cell fails.
     """
     notebook = nbformat.read(path, as_version=4)
-    runner(notebook, path.parent, timeout=300, store_widget_state=False).execute()
-    (path.parent / "predictions.json").unlink(missing_ok=True)
+    with TemporaryDirectory() as folder:
+        client = runner(notebook, Path(folder), timeout=300, store_widget_state=False)
+        await client.async_execute()
     for cell in notebook.cells:
         for output in cell.get("outputs", []):
             _still(output)
+    return notebook
+
+
+def page(path: Path, titles: Mapping[str, str]) -> str:
+    """Run the notebook at `path`, and make its page; as `executed`."""
+    notebook = asyncio.run(executed(path))
     exporter = HTMLExporter(
         template_name="basic", exclude_input_prompt=True, exclude_output_prompt=True
     )

@@ -541,7 +541,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (source / name).mkdir()
         if (ROOT / name).is_dir():
             shutil.copytree(ROOT / name, source / name, ignore=litter, dirs_exist_ok=True)
-    for name in ("pyproject.toml", "README.md", "LICENSE"):
+    for name in ("pyproject.toml", "README.md", "LICENSE", "LICENSE-CC-BY-4.0"):
         (source / name).write_bytes((ROOT / name).read_bytes() if (ROOT / name).exists() else b"#")
     if not chapters(source / "notebooks"):
         (source / "notebooks" / GAIT).write_text(notebook("# Gait"))
