@@ -7,26 +7,26 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from ikteach.arrays import Array, ArrayLike
-from ikteach.body import Effectors, Tree, forward
+from ikteach.arrays import Array
+from ikteach.body import Effectors, Tree, forward, locate
 from ikteach.body.figures import BALL, GAZE, HAND, HEEL, Figure, walker
 from ikteach.motion import gait
 from ikteach.motion.live.session import Session
 from ikteach.motion.path import Motion
-from ikteach.motion.paths import quality
 from ikteach.motion.paths.perform import imitate, perform
 from ikteach.motion.paths.recorded import Recorded
-from ikteach.motion.paths.retarget import CMU, retarget
+from ikteach.motion.paths.retarget import CMU, bones_of, retarget
 from ikteach.motion.paths.walk import natural
 from ikteach.motion.track import Track
 from ikteach.study.gaits import gait_report
 
 FEET = ("foot.l", "foot.r")  # rows of a walker that lie flat in both zero poses
 BALLS = dict(zip(gait.walking.names, ("ball.l", "ball.r", "hand.r", "hand.l"), strict=True))
+NOTES = ("play", "pause", "error", "reset")  # events of a session that set nothing
 FRAMES = 240  # of a cycle of the thesis's walk
 LOW_SHARE, ROUNDS = 0.4, 5  # of the frames that tell where the ground is; of the search for them
+FINE = 1 / 60  # time between two frames of a walk that is written down [s]
 NEAR_GROUND = 0.03  # a point that is lower may stand [m]
-FINE = 1 / 30  # time between two places at which a foot is looked for [s]
 
 
 def limbs(tree: Tree, names: Sequence[str] | None = None) -> Effectors:
@@ -97,7 +97,7 @@ def levelled(walk: Recorded) -> Recorded:
     slope = start = 0.0
     for _ in range(ROUNDS):  # the points that are lowest over the line, which they then make
         over = lowest - (slope * times + start)
-        near = over < np.quantile(over, LOW_SHARE)
+        near = over <= np.quantile(over, LOW_SHARE)
         slope, start = np.polyfit(times[near], lowest[near], 1)
     targets[:, points, 1] -= (slope * times + start - walk.floor)[:, None]
     low = targets[:, feet, 1] < walk.floor + NEAR_GROUND
@@ -110,6 +110,42 @@ def levelled(walk: Recorded) -> Recorded:
         raise ValueError("the recording has no whole stride of the left foot")
     whole = slice(begins[0], begins[-1])
     return replace(walk, times=times[whole], targets=targets[whole], standing=standing[whole])
+
+
+def for_human(path: Motion, figure: Figure, name: str) -> Recorded:
+    """Make the thesis's four targets of a walker's motion.
+
+    For a human whose pelvis is the ground: balls and hands as `figure` has them when it follows
+    `path`, seen from its pelvis.
+    """
+    run = perform(path, figure, "sdls", cycles=1, dt=FINE)
+    frames, tree = forward(run.tree, run.theta), run.tree
+    four = _as_thesis(tree)
+    pelvis = frames.positions[:, tree.index("pelvis.z")]
+    down, standing = path.stands(path.rate * run.times), np.zeros((len(run), len(four)), dtype=bool)
+    for i, side in enumerate("lr"):  # the order of the thesis's feet
+        foot = [path.names.index(f"{point}.{side}") for point in ("heel", "ball")]
+        standing[:, i] = down[:, foot].any(axis=1)
+    return Recorded(
+        run.times,
+        locate(frames, four) - pelvis[:, None],
+        four.names,
+        name=name,
+        standing=standing,
+        floor=path.on(*figure).floor - float(pelvis[:, 1].mean()),
+        speed=path.pace,
+    )
+
+
+def imported(recording: Any, name: str) -> Recorded:
+    """Make the thesis's four targets of a recording of a person.
+
+    Its bones are found by what programs call them. The errors are those of `retarget`.
+    """
+    tree = walker().tree
+    figure = Figure(tree, limbs(tree))
+    path = retarget(recording, figure, bones_of(recording), feet=FEET)
+    return for_human(path, figure, name)
 
 
 def _as_thesis(tree: Tree) -> Effectors:
@@ -180,43 +216,22 @@ def compared(recording: Any, methods: Sequence[str], *, cycles: float = 3) -> pd
     return gait_report(runs, paths)
 
 
-class Strides:
-    """The strides of a motion, of each side.
-
-    A stride goes from where the foot comes down to where it comes down again.
-    """
-
-    def __init__(self, path: Motion) -> None:
-        self.period, self.rate = path.period, path.rate
-        times = np.arange(-self.period, 2 * self.period, FINE)
-        self.strikes = {side: quality.strikes(path, times, side) for side in "lr"}
-
-    def share(self, phase: ArrayLike, side: str) -> Array:
-        """Return the share of the stride, 0 to 1, at phases (...) [rad]."""
-        at = np.asarray(phase) / self.rate % self.period
-        begins = self.strikes[side]
-        i = np.clip(np.searchsorted(begins, at, side="right") - 1, 0, len(begins) - 2)
-        return np.asarray((at - begins[i]) / (begins[i + 1] - begins[i]))
-
-
 def lately(session: Session, last: int) -> Track | None:
     """Return the last ticks on the motion's own clock.
 
-    The poses are those of the shown method, for as many ticks as the motion has been set as it is
-    now: before, it was another walk. The time of a frame is its phase by `path.rate`, as the
-    measures of a gait want it. None before the second tick.
+    The poses are those of the shown method, from when the session was last set otherwise: before,
+    it was another walk. The time of a frame is its phase by `path.rate`, as the measures of a gait
+    want it. None before the second tick.
     """
+    changes = [e.tick for e in session.events if e.run == session.runs and e.kind not in NOTES]
     log = session.log(last=last)
-    if len(log) < 2:
+    begin = int(np.searchsorted(log.tick, max(changes, default=0), side="right"))
+    if len(log) - begin < 2:
         return None
-    rate = session.gait.rate
-    usual = rate * session.gait.step_frequency * session.dt * session.gait.slowdown
-    other = np.flatnonzero(abs(np.diff(log.phase) - usual) > 1e-6 * abs(usual))
-    begin = other[-1] + 1 if len(other) else 0
     run = log.tracks()[session.method]
     return replace(
         run,
-        times=log.phase[begin:] / rate,
+        times=log.phase[begin:] / session.gait.rate,
         targets=run.targets[begin:],
         theta=run.theta[begin:],
         error=run.error[begin:],

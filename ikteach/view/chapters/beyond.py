@@ -15,7 +15,7 @@ from ikteach.motion.live.session import Session
 from ikteach.motion.paths import quality
 from ikteach.solvers import SOLVERS
 from ikteach.study import gait_report
-from ikteach.study.walks import Strides, lately, limbs, three_walks
+from ikteach.study.walks import lately, limbs, three_walks
 from ikteach.view.live.bands import JOINTS, Bands
 from ikteach.view.live.live import Live
 from ikteach.view.live.panel import Does, Panel, button, choice, dropdown, slider, tick_box
@@ -69,7 +69,6 @@ class WalksPlayer(Live):
             self.tree, self._seen_at, names=names, apart=1.2, width=760, height=400, slot=None
         )
         super().__init__(Abreast(sessions), scene, slot)
-        self._strides = {name: Strides(path) for name, (_, path) in self.walks.items()}
         self._drawn = -1
         self.bands, self._table = Bands(names), Prose()
         self.panel = self._make_panel()
@@ -119,10 +118,7 @@ class WalksPlayer(Live):
             session.use(SHOWN, method)
 
     def _change(self, **parameters: float) -> None:
-        session = self.session.sessions["natural"]
-        strides = Strides(session.gait.change(**parameters))
-        session.change(**parameters)
-        self._strides["natural"] = strides
+        self.session.sessions["natural"].change(**parameters)
 
     def _weigh(self, _: bool) -> None:
         """Ask for the parts that are ticked, and for nothing else."""
@@ -164,7 +160,7 @@ class WalksPlayer(Live):
         )
         if self.session.ticks // OFTEN != self._drawn:
             self._drawn = self.session.ticks // OFTEN
-            self.bands.draw({name: self._angles(name, one) for name, one in sessions.items()})
+            self.bands.draw({name: self._angles(one) for name, one in sessions.items()})
 
     def _targets(self, session: Session, pose: Array, rise: float) -> Array:
         """Place the targets that are drawn (k, 3); where none is, the mark lies on the body."""
@@ -174,17 +170,16 @@ class WalksPlayer(Live):
                 places[i] = session.targets[session.effectors.names.index(name)] + (0, rise, 0)
         return places
 
-    def _angles(self, name: str, session: Session) -> tuple[Array, Array]:
+    def _angles(self, session: Session) -> tuple[Array, Array]:
         """Find the shares of the last stride (T,), and its angles (T, 3) [degrees]."""
-        run = lately(session, LAST)
+        run, path = lately(session, LAST), session.gait
         if run is None:
             return np.zeros(0), np.zeros((0, 3))
-        strides = self._strides[name]
-        share = strides.share(strides.rate * run.times, "l")
+        share = quality.cycle(path, path.rate * run.times)[:, 0]
         gone = share + np.append(0, np.cumsum(np.diff(share) < 0))  # in strides
         last = gone > gone[-1] - 1
-        rows = [self.tree.index(quality.ROWS[joint].format("l")) for joint in JOINTS]
-        return share[last], np.degrees(run.theta[last][:, rows])
+        angles = quality.sagittal(self.tree, run.theta[last])
+        return share[last], np.stack([angles[joint][:, 0] for joint in JOINTS], axis=-1)
 
     def report(self) -> None:
         """Bring words and table up to date."""

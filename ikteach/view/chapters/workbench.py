@@ -10,6 +10,7 @@ from ikteach.motion.live.log import Log
 from ikteach.motion.live.session import Session
 from ikteach.motion.live.settings import SESSION, check_options
 from ikteach.motion.mix import Mix
+from ikteach.motion.path import Motion
 from ikteach.solvers import SOLVERS, Solver
 from ikteach.view.chapters.gait import session_table, session_words
 from ikteach.view.live.live import Live
@@ -17,9 +18,10 @@ from ikteach.view.live.panel import Act, Does, Panel, button
 from ikteach.view.live.strips import Strips
 from ikteach.view.tools.files import Keeper
 from ikteach.view.tools.inspector import Glass
+from ikteach.view.tools.motion_files import MotionFiles
 from ikteach.view.tools.recorder import Recorder
 from ikteach.view.tools.replay import Replay
-from ikteach.view.tools.session_panels import MethodPanel, WoundPanel, gait_panel, motion_panel
+from ikteach.view.tools.session_panels import GaitPanel, MethodPanel, MotionPanel, WoundPanel
 from ikteach.view.tools.view_panels import GHOST, ONE, ObjectPanel, ViewPanel, scene_of
 from ikteach.view.webgl.targets import Targets
 from ikteach.view.widgets.closing import close_all
@@ -54,6 +56,8 @@ class Workbench(Live):
         self.recorder = Recorder(session, folder=folder, slot=None)
         self.glass = Glass(session, stop=self.pause, show=self.draw, slot=None)
         self.keeper = Keeper(session, self._look_at, folder=folder, slot=None)
+        self.motion = MotionPanel(session, self._acting)
+        self.files = MotionFiles(session, self._take, folder=folder, slot=None)
         self.wounds = WoundPanel(session, self._acting)
         self.view = ViewPanel(self, self.guarded, self._turned, self._set_figures)
         self.object = ObjectPanel(self, self.guarded, self.view.straighten)
@@ -64,7 +68,7 @@ class Workbench(Live):
         self._drawer = widgets.Accordion(
             [
                 *(panel.widget for panel in self.panels.values()),
-                widgets.VBox([self.recorder, self.keeper]),
+                widgets.VBox([self.recorder, self.files, self.keeper]),
                 self.glass,
             ],
             titles=[*self.panels, "Recording", "One iteration, magnified"],
@@ -72,11 +76,7 @@ class Workbench(Live):
         )
         self._table, self._aside = Prose(), widgets.VBox()  # aside: a run that is looked at
         self._arranged = Arranged(self._stage(), [self._aside, self._drawer, self._table])
-        self.children = [
-            self._arranged,
-            self.status,
-            self.strips,
-        ]
+        self.children = [self._arranged, self.status, self.strips]
         self.view.straighten()
         self._agree()
         self.report()
@@ -86,12 +86,12 @@ class Workbench(Live):
         swings = ("Steps", "Hands")
         return [
             MethodPanel(session, act),
-            motion_panel(session, act),
+            self.motion,
             self.wounds,
             self.view,
             self.object,
-            gait_panel("Speed", session, ("Speed",), act),
-            gait_panel("Target position", session, swings, act, self.targets),
+            GaitPanel("Speed", session, ("Speed",), act),
+            GaitPanel("Target position", session, swings, act, self.targets),
         ]
 
     def _make_bar(self) -> Panel:
@@ -257,6 +257,12 @@ class Workbench(Live):
         )
         targets.on_change(self.guarded(lambda *_: self._agree()))
         return targets
+
+    def _take(self, motion: Motion) -> None:
+        """Let the targets make a motion from a file."""
+        self.motion.add(motion)
+        self._agree()
+        self.acted()
 
     def _look_at(self, run: Log) -> None:
         if run.tree.names != self.session.tree.names:

@@ -2,22 +2,26 @@
 
 import inspect
 from collections.abc import Callable, Mapping
-from functools import partial
+from functools import cache, partial
 from math import log10, pi, radians
 from typing import Any
 
 import numpy as np
 
 from ikteach.arrays import Array
+from ikteach.body.figures import Figure
+from ikteach.formats.bvh import recorded_walk
 from ikteach.markup import Markup, plain
 from ikteach.motion.gait import MOTIONS, WOUND, Gait, displayed
 from ikteach.motion.live.session import Session
 from ikteach.motion.mix import Mix
-from ikteach.motion.path import Motion
+from ikteach.motion.path import Motion, Path
+from ikteach.motion.paths.recorded import drawn
 from ikteach.motion.rules import BUSS_CAPS, clip, hold, ignore, per_chain, whole
 from ikteach.names import unknown
 from ikteach.solvers import SOLVERS, Solver
 from ikteach.solvers.sdls import hard, soft
+from ikteach.study.walks import for_human, three_walks
 from ikteach.view.live.panel import (
     Act,
     Does,
@@ -36,7 +40,8 @@ OWN, EQUAL, NONE = "each author's own", "equal", "none"
 CLAMPS = {"hard": hard, "soft": soft}
 CAPS = {"whole": whole, "per_chain": per_chain}
 LIMITS = {"hold": hold, "clip": clip, "ignore": ignore}
-BY_HAND = "by hand"
+BY_HAND, DRAWN = "by hand", "drawn"
+WRITTEN = ("natural", "recorded", DRAWN)  # motions that are made when they are first chosen
 LABEL: dict[str, Any] = {"label_width": "150px"}
 LOOK: dict[str, Any] = {"width": "380px", **LABEL}
 
@@ -244,22 +249,133 @@ class WoundPanel(Panel):
         self.session.change(wound={})
 
 
-def motion_panel(session: Session, guard: Guard) -> Panel:
-    """Make the choice of how the targets move."""
+class MotionPanel(Panel):
+    """The choice of how the targets move.
 
-    def move(name: str) -> None:
-        session.by_hand = name == BY_HAND
-        if name != BY_HAND:
-            session.gait = as_set(MOTIONS[name], session)
+    One of the motions is drawn, point by point.
 
-    names = [*MOTIONS, BY_HAND]
-    motion = choice("Motion", names, session.gait.name, label_width="60px")
-    return Panel(
-        "Motion",
-        [{"motion": Does(motion, move)}],
-        shows=lambda: {"motion": BY_HAND if session.by_hand else session.gait.name},
-        guard=guard,
-    )
+    known  {name: makes the motion}; `add` puts another among them
+    """
+
+    def __init__(self, session: Session, guard: Guard) -> None:
+        self.session, self._points = session, list[Array]()
+        self.known: dict[str, Callable[[], Motion]] = {
+            **{name: partial(MOTIONS.__getitem__, name) for name in MOTIONS},
+            **{name: partial(human_walk, name) for name in WRITTEN[:2]},
+        }
+        self._said = Prose()
+        names = list(session.effectors.names)
+        motion = choice("Motion", [*self.known, BY_HAND], session.gait.name, label_width="60px")
+        super().__init__(
+            "Motion",
+            [{"motion": Does(motion, self._move)}],
+            folded={
+                "Draw a curve, point by point": [
+                    {"drawn": Does(dropdown("Curve of", names, **LABEL), lambda _: self._forget())},
+                    {
+                        "point": Does(button("Add the place of its target"), self._point),
+                        "forget": Does(button("Forget the points"), self._forget),
+                        "along": Does(button("Go along them"), self._go_along),
+                    },
+                    {"seconds": slider("once round [s]", 2.0, 0.5, 10.0, 0.1, **LOOK)},
+                    self._said,
+                ]
+            },
+            shows=lambda: {"motion": BY_HAND if session.by_hand else session.gait.name},
+            guard=guard,
+        )
+        self._forget()
+
+    def add(self, motion: Motion) -> None:
+        """Put a motion among those to choose from, and let the targets make it."""
+        if motion.name in (*MOTIONS, *WRITTEN, BY_HAND):
+            raise ValueError(f"{motion.name!r} is a motion already: give the file another name")
+        as_set(motion, self.session).on(self.session.tree, self.session.effectors)
+        self.known[motion.name] = lambda: motion
+        self._offer()
+        self._move(motion.name)
+
+    def agree(self) -> None:
+        """Set the choice to what the session does, without acting."""
+        if not self.session.by_hand and self.session.gait.name not in self.known:
+            gait = self.session.gait
+            self.known[gait.name] = lambda: gait
+            self._offer()
+        super().agree()
+
+    def _offer(self) -> None:
+        self._quiet = True
+        try:
+            self.controls["motion"].options = [*self.known, BY_HAND]
+        finally:
+            self._quiet = False
+
+    def _move(self, name: str) -> None:
+        motion = None if name == BY_HAND else as_set(self.known[name](), self.session)
+        self.session.by_hand = motion is None
+        if motion is not None:
+            self.session.gait = motion
+
+    def _point(self) -> None:
+        which = self.session.effectors.names.index(self.values["drawn"])
+        self._points.append(self.session.targets[which].copy())
+        self._tell()
+
+    def _forget(self) -> None:
+        self._points.clear()
+        self._tell()
+
+    def _tell(self) -> None:
+        self._said.value = (
+            f"{len(self._points)} points. Move the target by hand (in the scene, by keys or in "
+            "Target position), and add its place; the curve is closed."
+        )
+
+    def _go_along(self) -> None:
+        values, figure = self.values, Figure(self.session.tree, self.session.effectors)
+        if len(self._points) < 2:
+            raise ValueError("a curve needs two points or more: add places of the target first")
+        curve = drawn(
+            self._points, values["seconds"], figure=figure, effector=values["drawn"], name=DRAWN
+        )
+        self.known[DRAWN] = lambda: curve
+        self._offer()
+        self._move(DRAWN)
+
+
+@cache
+def human_walk(name: str) -> Motion:
+    """Return a walk for a human whose pelvis is the ground.
+
+    name  "natural" or "recorded"
+    """
+    figure, path = three_walks(recorded_walk())[name]
+    return for_human(path, figure, name)
+
+
+class GaitPanel(Panel):
+    """Sliders of a motion's parameters; those that it lacks are disabled."""
+
+    def __init__(
+        self, title: str, session: Session, groups: tuple[str, ...], guard: Guard, *above: Any
+    ) -> None:
+        self._session = session
+        rows = [*above, *gait_rows(session, *groups)]
+        super().__init__(title, rows, shows=lambda: gait_values(session, *groups), guard=guard)
+
+    def agree(self) -> None:
+        """Set the sliders to the motion's parameters, without acting."""
+        super().agree()
+        for name, control in self.controls.items():
+            control.disabled = not takes(self._session.gait, name)
+
+
+def takes(motion: Motion, name: str) -> bool:
+    """Say whether a motion has a parameter of `SLIDERS`.
+
+    The speed of a walk or a recording is that of its ground, no phase per second.
+    """
+    return hasattr(motion, name) and (name != "speed" or isinstance(motion, Gait | Path))
 
 
 def gait_rows(session: Session, *groups: str, **look: Any) -> list[dict[str, Does]]:
@@ -276,25 +392,14 @@ def gait_rows(session: Session, *groups: str, **look: Any) -> list[dict[str, Doe
         }
         for group in groups
         for name, (label, *span) in SLIDERS[group].items()
-        if hasattr(session.gait, name)
+        if takes(session.gait, name)
     ]
 
 
 def gait_values(session: Session, *groups: str) -> dict[str, Any]:
     """Give the values that the sliders of `gait_rows` stand for."""
     names = [name for group in groups for name in SLIDERS[group]]
-    return {name: getattr(session.gait, name) for name in names if hasattr(session.gait, name)}
-
-
-def gait_panel(
-    title: str, session: Session, groups: tuple[str, ...], guard: Guard, *above: Any
-) -> Panel:
-    """Make the sliders of these groups of gait parameters.
-
-    They stand under other widgets if there are any.
-    """
-    rows = [*above, *gait_rows(session, *groups)]
-    return Panel(title, rows, shows=lambda: gait_values(session, *groups), guard=guard)
+    return {name: getattr(session.gait, name) for name in names if takes(session.gait, name)}
 
 
 def motions(session: Session) -> list[str]:

@@ -57,7 +57,7 @@ def test_each_drag_is_one_event_and_one_undo(bench, playing):
     assert bench.session.targets[3] == pytest.approx([0.6, 0.309, 0.1])
     bench.undo()
     assert not bench.session.by_hand
-    assert bench.panels["Motion"].values == {"motion": "walking"}
+    assert bench.panels["Motion"].values["motion"] == "walking"
     if not playing:
         assert bench.session.targets == pytest.approx(walking)
 
@@ -152,3 +152,63 @@ def test_the_picture_tells_distances_while_it_is_asked(bench):
     bench.scene.driver.measuring = True
     length = Lengths.of(bench.session.tree, bench.session.effectors)
     assert sent[-1]["far"] == [length(float(far)) for far in bench.session.error]
+
+
+@pytest.mark.parametrize("name", ["natural", "recorded"])
+def test_a_walk_with_stance_is_followed_undone_and_replayed(bench, name):
+    control(bench, "motion").value = name
+    for _ in range(60):
+        bench.session.tick()
+    assert bench.session.gait.name == name
+    assert bench.session.error.mean() < 0.02
+    assert not bench.session.gait.stands(0.0).all()
+    assert control(bench, "speed").disabled
+    assert control(bench, "back_z_leg").disabled
+    control(bench, "step_frequency").value = 2.0
+    assert bench.session.gait.step_frequency == 2
+    bench.scrub()
+    assert len(bench.replay.run) == 60
+    bench.step()
+    bench.undo()
+    assert (bench.session.gait.name, bench.session.gait.step_frequency) == (name, 1)
+    bench.undo()
+    assert control(bench, "motion").value == "walking"
+    assert not control(bench, "speed").disabled
+
+
+def test_a_curve_is_drawn_point_by_point(bench):
+    control(bench, "drawn").value = "hand.l"
+    corners = [[0.3, 0, 0.3], [0.5, 0, 0.3], [0.5, 0.3, 0.3]]
+    for corner in corners:
+        bench.session.aim("hand.l", corner)
+        control(bench, "point").click()
+    control(bench, "seconds").value = 3.0
+    control(bench, "along").click()
+    gait = bench.session.gait
+    assert (gait.name, gait.period) == ("drawn", pytest.approx(3))
+    assert control(bench, "motion").value == "drawn"
+    assert not bench.session.by_hand
+    hand = bench.session.effectors.names.index("hand.l")
+    assert bench.session.targets[hand] == pytest.approx(corners[0])
+    for _ in range(90):
+        bench.session.tick()
+    assert bench.session.error[hand] < 0.01
+    control(bench, "motion").value = "walking"
+    control(bench, "motion").value = "drawn"
+    assert bench.session.gait.name == "drawn"
+
+
+def test_a_curve_of_one_point_is_refused_and_the_bench_goes_on(bench):
+    control(bench, "along").click()
+    assert "needs two points" in bench.status.wrong
+    control(bench, "motion").value = "running"
+    assert bench.status.wrong == ""
+
+
+def test_a_motion_that_is_given_is_among_the_motions(bench):
+    walk = bench.session.gait.change(name="limping")
+    bench.session.gait = walk
+    bench._agree()
+    assert control(bench, "motion").value == "limping"
+    with pytest.raises(ValueError, match="a motion already"):
+        bench.motion.add(walk.change(name="running"))
