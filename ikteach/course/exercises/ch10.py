@@ -100,7 +100,7 @@ def nod(answer: Answer) -> None:
         angle = float(answer(y, z, eyes))
         wanted = float(np.arcsin(eyes / np.hypot(y, z)) - np.arctan2(y, z))
         where = f"With the cursor at y {y:.3f} and z {z:.3f} m and eyes {eyes:g} m above the neck"
-        degrees = np.degrees(angle)
+        degrees = np.degrees(angle) + 0.0  # no −0
         expect(
             LOW - 1e-4 <= angle <= HIGH + 1e-4,
             f"The neck goes from −30° to 60°. {where} you have it nod by {degrees:.5g}°.",
