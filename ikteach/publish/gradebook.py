@@ -93,7 +93,7 @@ IDENTITY = {"Email address", "ID number", "First name", "Last name", "Email", "u
 
 
 def found(hand_in: HandIn, roster: pd.DataFrame) -> Any:
-    """Find the one row of a roster that names a student, or raise RefusedError."""
+    """Find a student's row of a roster, or raise RefusedError."""
     wanted = {_plain(hand_in.student), _plain(hand_in.number)} - {""}
     rows = [i for i, row in roster.iterrows() if wanted & set(_called(row))]
     if len(rows) != 1:
@@ -117,7 +117,7 @@ def _plain(text: str) -> str:
 
 
 def feedback(one: Graded, scheme: Scheme) -> str:
-    """Say in a line what was passed and what was said of the rest."""
+    """Say in a line what was passed and what not."""
     told = []
     for key in scheme.points:
         verdict = one.verdicts.get(key)
@@ -126,7 +126,7 @@ def feedback(one: Graded, scheme: Scheme) -> str:
     return " | ".join(told)
 
 
-def summary(graded: list[Graded], scheme: Scheme) -> str:
+def class_summary(graded: list[Graded], scheme: Scheme) -> str:
     """Tell in words how a class did, and what most got wrong."""
     points = pd.Series([one.points(scheme) for one in graded])
     lines = [

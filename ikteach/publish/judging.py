@@ -36,7 +36,7 @@ checking.OURS.add(__file__)  # no line of a student's
 
 
 class Judging:
-    """Judges answers, each in a process of its own; close it when done.
+    """Judges answers, each in a process of its own.
 
     hidden  folders that no answer may see, where bubblewrap is installed: what was handed in
     walls   what stands between the answers and this machine, in words
@@ -206,7 +206,7 @@ class Remote:
 
 
 def bubblewrap() -> str:
-    """Find the program bwrap, if it may be used here; else ''."""
+    """Find the program bwrap; '' where it cannot be used."""
     program = shutil.which("bwrap") or ""
     if program:
         tried = [program, "--ro-bind", "/", "/", "--dev", "/dev", "--proc", "/proc"]
