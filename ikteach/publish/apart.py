@@ -175,7 +175,7 @@ def _limit() -> None:
 
 
 def guard(home: str) -> Callable[[str, tuple[Any, ...]], None]:
-    """Make the hook that says no; files may be written in `home` alone.
+    """Make the hook that refuses all files outside of `home`.
 
     Everything that it uses is bound here, where an answer cannot put another in its place.
     """

@@ -46,7 +46,7 @@ def details(
                     "exercise": key,
                     "passed": passed,
                     "points": worth if passed else 0,
-                    "sentence": verdict.sentence if verdict else "Not handed in.",
+                    "sentence": "Not handed in." if verdict is None else verdict.sentence,
                     "claimed": key in one.hand_in.claims,
                 }
             )
@@ -122,12 +122,12 @@ def feedback(one: Graded, scheme: Scheme) -> str:
     for key in scheme.points:
         verdict = one.verdicts.get(key)
         word = "not handed in" if verdict is None else verdict.sentence
-        told.append(f"{key}: {'passed' if verdict and verdict.passed else word}")
+        told.append(f"{key}: {'passed' if verdict is not None and verdict.passed else word}")
     return " | ".join(told)
 
 
 def class_summary(graded: list[Graded], scheme: Scheme) -> str:
-    """Tell in words how a class did, and what most got wrong."""
+    """Tell how a class did, and what most got wrong."""
     points = pd.Series([one.points(scheme) for one in graded])
     lines = [
         f"{len(graded)} students, {len(scheme.points)} exercises, {scheme.total:g} points in all.",
