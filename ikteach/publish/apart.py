@@ -26,10 +26,10 @@ import numpy as np
 
 from ikteach.publish.carried import packed
 
-MEMORY = 2 * 2**30  # bytes beyond those that the imports have taken
+MORE_MEMORY = 2**30  # bytes beyond those that the imports have taken
 PROCESSOR = 120  # [s] of an answer
 WRITTEN = 2**20  # bytes of a file
-LARGEST = 2**30  # bytes of a request
+LARGEST_REQUEST = 2**30  # bytes of a request
 SIZE = struct.Struct(">Q")
 SECRET = ("ikteach.course.solutions", "ikteach.course.exercises")
 HIDDEN = [Path(__file__).parents[1] / "course" / name for name in ("solutions", "exercises")]
@@ -53,7 +53,7 @@ def send(stream: BinaryIO, data: bytes) -> None:
 
 
 def receive(stream: BinaryIO, most: int) -> bytes:
-    """Read one message, and no byte more; EOFError at the end, ValueError if too long."""
+    """Read one message; EOFError, or ValueError if too long."""
     (size,) = SIZE.unpack(_read(stream, SIZE.size))
     if size > most:
         raise ValueError(f"a message of {size} bytes")
@@ -77,7 +77,7 @@ def main() -> None:
     send(replies, b"ready")
     while True:
         try:
-            source = receive(requests, LARGEST).decode()
+            source = receive(requests, LARGEST_REQUEST).decode()
         except EOFError:
             return
         if not hasattr(os, "fork"):
@@ -119,12 +119,12 @@ def _serve(source: str, requests: BinaryIO, replies: BinaryIO) -> None:
         return names["answer"]
 
     send(replies, _tried(bind, functions))
-    while (request := pickle.loads(receive(requests, LARGEST))) is not None:
+    while (request := pickle.loads(receive(requests, LARGEST_REQUEST))) is not None:
         at, arguments = request
         given = pickle.loads(pickle.dumps(arguments))
         reply = _tried(partial(functions[at], *given), functions)
         changed = [
-            i for i, pair in enumerate(zip(arguments, given, strict=True)) if not same(*pair)
+            i for i, pair in enumerate(zip(arguments, given, strict=True)) if not unchanged(*pair)
         ]
         send(replies, b"changed %d" % changed[0] if changed else reply)
 
@@ -142,7 +142,7 @@ def _tried(act: Callable[[], Any], functions: list[Callable[..., Any]]) -> bytes
         return b"raised " + packed([type(error).__name__, known[0].__name__, said], [])
 
 
-def same(before: Any, after: Any) -> bool:
+def unchanged(before: Any, after: Any) -> bool:
     """Tell whether an argument is as it was."""
     if hasattr(before, "equals"):
         return bool(before.equals(after))
@@ -160,7 +160,7 @@ def _limit() -> None:
         pages = int(Path("/proc/self/statm").read_text().split()[0])
         taken = pages * resource.getpagesize()
     for what, most in (
-        ("RLIMIT_AS", taken + MEMORY),
+        ("RLIMIT_AS", taken + MORE_MEMORY),
         ("RLIMIT_CPU", PROCESSOR),
         ("RLIMIT_FSIZE", WRITTEN),
         ("RLIMIT_NOFILE", 64),
@@ -175,7 +175,7 @@ def _limit() -> None:
 
 
 def guard(home: str) -> Callable[[str, tuple[Any, ...]], None]:
-    """Make the hook that says no; files may be written in `home` alone.
+    """Make the hook that refuses all files outside of `home`.
 
     Everything that it uses is bound here, where an answer cannot put another in its place.
     """

@@ -8,7 +8,7 @@ students without the solutions, which stand between the tools' own marks.
 import ast
 import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -33,7 +33,7 @@ NOTE = "A test cell shows what is wrong in a sentence. It is worth its point whe
 
 
 class Task(NamedTuple):
-    """One exercise: key, name of the answer, text, and code with the solution marked."""
+    """One exercise, with the solution marked in its code."""
 
     key: str
     name: str
@@ -41,7 +41,7 @@ class Task(NamedTuple):
     code: str
 
 
-def nbgrader(notebooks: Path, folder: Path) -> None:
+def for_nbgrader(notebooks: Path, folder: Path) -> None:
     """Write `source/CHAPTER/CHAPTER.ipynb`, and the settings."""
     import nbformat
 
@@ -58,7 +58,7 @@ def nbgrader(notebooks: Path, folder: Path) -> None:
     (folder / "nbgrader_config.py").write_text(SETTINGS, encoding="utf-8")
 
 
-def otter(notebooks: Path, folder: Path) -> None:
+def for_otter(notebooks: Path, folder: Path) -> None:
     """Write `CHAPTER.ipynb` for `otter assign`."""
     import nbformat
 
@@ -131,11 +131,24 @@ def _tasks(cells: list[Any], mark: str) -> Iterator[Task]:
             text = cell.source
             continue
         for key, name in checks(cell):
-            yield Task(key, name, text, solved(cell.source, solution(key), mark))
+            answer = solution(key)
+            yield Task(key, name, text, solved(cell.source, answer, mark, _imports(cells, answer)))
 
 
-def solved(stub: str, answer: str, mark: str) -> str:
-    """Write the solution into the stub of a cell, between the marks of a tool.
+def _imports(cells: list[Any], answer: str) -> list[str]:
+    """List the imports of a notebook that an answer needs."""
+    used = {node.id for node in ast.walk(ast.parse(answer)) if isinstance(node, ast.Name)}
+    found: dict[str, None] = {}
+    for cell in cells:
+        for one in ast.parse(cell.source).body if cell.cell_type == "code" else []:
+            if isinstance(one, ast.Import | ast.ImportFrom):
+                one.names = [name for name in one.names if (name.asname or name.name) in used]
+                found |= {ast.unparse(one): None} if one.names else {}
+    return list(found)
+
+
+def solved(stub: str, answer: str, mark: str, imports: Sequence[str] = ()) -> str:
+    """Write the solution into a stub, between marks.
 
     Without the lines between them, the student finds the head of the function and its docstring.
     """
@@ -143,8 +156,7 @@ def solved(stub: str, answer: str, mark: str) -> str:
     lines = answer.splitlines()
     ours = next(one for one in ast.parse(stub).body if _name(one) == _name(last))
     given = stub.splitlines()
-    head = [ast.unparse(one) for one in ast.parse(stub).body if isinstance(one, ast.Import)]
-    head = list(dict.fromkeys(["import numpy as np", *head]))
+    head = [*dict.fromkeys(["import numpy as np", *imports])]
     head += [ast.unparse(one) for one in before]
     begin, end = f"{mark}BEGIN SOLUTION", f"{mark}END SOLUTION"
     if not (isinstance(last, ast.FunctionDef) and isinstance(ours, ast.FunctionDef)):

@@ -81,14 +81,14 @@ def nbgrader(notebooks: Path, folder: Path) -> None:
     """Write the exercises as assignments of nbgrader."""
     from ikteach.publish import assignments
 
-    assignments.nbgrader(notebooks, folder)
+    assignments.for_nbgrader(notebooks, folder)
 
 
 def otter(notebooks: Path, folder: Path) -> None:
     """Write the exercises as sources of `otter assign`."""
     from ikteach.publish import assignments
 
-    assignments.otter(notebooks, folder)
+    assignments.for_otter(notebooks, folder)
 
 
 BUILDS = {

@@ -153,7 +153,7 @@ def _text(cell: Any) -> Any:
 
 
 def shown_text(text: str) -> str:
-    """Text as a terminal may show it: without what would steer it."""
+    """Make of a text what a terminal may show."""
     return "".join(one if one.isprintable() or one == "\n" else "�" for one in text)
 
 

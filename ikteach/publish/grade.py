@@ -30,7 +30,7 @@ TABLES: dict[str, Table] = {
 
 
 def grade(folder: Path, scheme: Scheme) -> tuple[list[Graded], dict[str, str], str]:
-    """Judge what is in a folder; give the marks, what was left out, and the walls."""
+    """Judge a folder; give marks, what was left out, walls."""
     found, skipped = hand_ins(folder)
     known: dict[tuple[str, str], Verdict] = {}  # many answers are alike
     graded = []
@@ -91,7 +91,7 @@ def main(argv: list[str]) -> int:
         print(shown_text(f"{name}: left out: {why}"), file=sys.stderr)
     if not graded:
         raise RefusedError(f"Nobody has handed in anything in {options.folder}.")
-    print(shown_text(gradebook.summary(graded, scheme)))
+    print(shown_text(gradebook.class_summary(graded, scheme)))
     print(f"Judged behind: {walls}.")
     tables = {name: TABLES[name](graded, scheme, roster) for name in outputs}
     for name, path in outputs.items():

@@ -46,7 +46,7 @@ def details(
                     "exercise": key,
                     "passed": passed,
                     "points": worth if passed else 0,
-                    "sentence": verdict.sentence if verdict else "Not handed in.",
+                    "sentence": "Not handed in." if verdict is None else verdict.sentence,
                     "claimed": key in one.hand_in.claims,
                 }
             )
@@ -93,7 +93,7 @@ IDENTITY = {"Email address", "ID number", "First name", "Last name", "Email", "u
 
 
 def found(hand_in: HandIn, roster: pd.DataFrame) -> Any:
-    """Find the one row of a roster that names a student, or raise RefusedError."""
+    """Find a student's row of a roster, or raise RefusedError."""
     wanted = {_plain(hand_in.student), _plain(hand_in.number)} - {""}
     rows = [i for i, row in roster.iterrows() if wanted & set(_called(row))]
     if len(rows) != 1:
@@ -117,17 +117,17 @@ def _plain(text: str) -> str:
 
 
 def feedback(one: Graded, scheme: Scheme) -> str:
-    """Say in a line what was passed and what was said of the rest."""
+    """Say in a line what was passed and what not."""
     told = []
     for key in scheme.points:
         verdict = one.verdicts.get(key)
         word = "not handed in" if verdict is None else verdict.sentence
-        told.append(f"{key}: {'passed' if verdict and verdict.passed else word}")
+        told.append(f"{key}: {'passed' if verdict is not None and verdict.passed else word}")
     return " | ".join(told)
 
 
-def summary(graded: list[Graded], scheme: Scheme) -> str:
-    """Tell in words how a class did, and what most got wrong."""
+def class_summary(graded: list[Graded], scheme: Scheme) -> str:
+    """Tell how a class did, and what most got wrong."""
     points = pd.Series([one.points(scheme) for one in graded])
     lines = [
         f"{len(graded)} students, {len(scheme.points)} exercises, {scheme.total:g} points in all.",

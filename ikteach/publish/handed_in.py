@@ -21,8 +21,8 @@ MAGIC = re.compile(r"^\s*[%!].*$", re.MULTILINE)
 LONGEST = 100_000  # letters of an answer
 MOST_CELLS = 1000
 # How learning platforms name what they hand out: Moodle's folders and Canvas's files.
-MOODLE = re.compile(r"(?P<name>.+?)_(?P<id>\d+)_assignsubmission_\w+_?")
-CANVAS = re.compile(r"(?P<name>[^_]+)(_LATE)?_(?P<id>\d+)_\d+_.+")
+MOODLE_FOLDER = re.compile(r"(?P<name>.+?)_(?P<id>\d+)_assignsubmission_\w+_?")
+CANVAS_FILE = re.compile(r"(?P<name>[^_]+)(_LATE)?_(?P<id>\d+)_\d+_.+")
 
 
 class HandIn(NamedTuple):
@@ -40,7 +40,7 @@ class HandIn(NamedTuple):
 
 
 def hand_ins(folder: Path) -> tuple[list[HandIn], dict[str, str]]:
-    """Read what is in a folder; {file: why it was left out}."""
+    """Read what is in a folder, and why not."""
     if not folder.is_dir():
         raise NotADirectoryError(f"{folder} is not a folder")
     found: dict[str, HandIn] = {}
@@ -66,7 +66,7 @@ def hand_ins(folder: Path) -> tuple[list[HandIn], dict[str, str]]:
 
 def _of(found: dict[str, HandIn], place: str) -> HandIn:
     """Find the student to whom a folder or a file belongs."""
-    match = MOODLE.fullmatch(place) or CANVAS.fullmatch(place)
+    match = MOODLE_FOLDER.fullmatch(place) or CANVAS_FILE.fullmatch(place)
     name, number = (match["name"], match["id"]) if match else (place, "")
     name = whole_characters(name)
     return found.setdefault(f"{name} {number}", HandIn(name, number, {}, set()))
@@ -99,7 +99,10 @@ def _cells(notebook: Any) -> list[str]:
 
 
 def answers(cells: list[str]) -> dict[str, str]:
-    """Find the source of each answer in code cells; a later check of a key replaces an earlier."""
+    """Find the source of each answer in code cells.
+
+    A later check of a key replaces an earlier one.
+    """
     found: dict[str, str] = {}
     before: list[ast.stmt] = []
     for text in cells:

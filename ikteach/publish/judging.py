@@ -26,6 +26,7 @@ from ikteach.files import bounded
 from ikteach.publish.apart import HIDDEN, receive, send
 from ikteach.publish.carried import unpacked
 from ikteach.publish.delivery import PACKAGE
+from ikteach.publish.parser import RefusedError
 
 STARTING = 60.0  # [s] until Python runs and has its imports
 PATIENCE = 3.0  # times the seconds of the exercise: a machine that judges a class is a busy one
@@ -36,7 +37,7 @@ checking.OURS.add(__file__)  # no line of a student's
 
 
 class Judging:
-    """Judges answers, each in a process of its own; close it when done.
+    """Judges answers, each in a process of its own.
 
     hidden  folders that no answer may see, where bubblewrap is installed: what was handed in
     walls   what stands between the answers and this machine, in words
@@ -149,10 +150,13 @@ class Judging:
             env=environment,
             start_new_session=True,
         )
-        watch = self._watch(STARTING)
+        watch, word = self._watch(STARTING), b""
         with suppress(OSError, EOFError, ValueError):
-            receive(self._process.stdout, 10)
+            word = receive(self._process.stdout, 10)
         watch.cancel()
+        if word != b"ready":  # no answer has run yet: nobody's mark may hang on this
+            self._stop()
+            raise RefusedError(f"No process for answers can be started with {sys.executable}.")
 
     def _watch(self, seconds: float) -> threading.Timer:
         watch = threading.Timer(seconds, self._too_late)
@@ -165,8 +169,10 @@ class Judging:
             return []
         walls = [self._bubble, "--ro-bind", "/", "/", "--dev", "/dev", "--proc", "/proc"]
         walls += ["--unshare-all", "--die-with-parent"]
-        for folder in filter(Path.is_dir, self._hidden):
-            walls += ["--tmpfs", str(folder.resolve())]
+        needed = [Path(sys.executable), Path(sys.base_prefix), Path(sys.prefix), PACKAGE]
+        for folder in (one.resolve() for one in self._hidden if one.is_dir()):
+            if not any(one.is_relative_to(folder) for one in needed):
+                walls += ["--tmpfs", str(folder)]
         return [*walls, "--bind", self._folder, self._folder, "--chdir", self._folder]
 
     def _too_late(self) -> None:
@@ -206,7 +212,7 @@ class Remote:
 
 
 def bubblewrap() -> str:
-    """Find the program bwrap, if it may be used here; else ''."""
+    """Find the program bwrap; '' where it cannot be used."""
     program = shutil.which("bwrap") or ""
     if program:
         tried = [program, "--ro-bind", "/", "/", "--dev", "/dev", "--proc", "/proc"]

@@ -19,7 +19,7 @@ from ikteach.files import bounded, quoted, read_text
 from ikteach.names import unknown
 from ikteach.publish.parser import RefusedError
 
-LARGEST = 2**20  # bytes of a file
+LARGEST_SCHEME = 2**20  # bytes of a file
 
 
 class Scheme(NamedTuple):
@@ -47,7 +47,7 @@ def read_scheme(path: Path | None) -> Scheme:
     if path is None:
         return Scheme(dict.fromkeys(keys, 1.0))
     try:
-        content = tomllib.loads(read_text(path, LARGEST))
+        content = tomllib.loads(read_text(path, LARGEST_SCHEME))
     except (OSError, ValueError) as error:
         raise RefusedError(f"{path}: {bounded(str(error))}.") from None
     given = content.get("points", {})

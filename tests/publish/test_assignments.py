@@ -107,8 +107,13 @@ def test_the_marks_are_those_that_the_tools_want(built: Any) -> None:
 
 def test_a_solution_goes_into_its_stub() -> None:
     stub = 'from x import check\n\n\ndef f(x):\n    """Says."""\n    ...\n\n\ncheck("00.a", f)'
-    made = solved(stub, 'K = 2\n\n\ndef f(x):\n    """Other."""\n    y = K * x\n    return y', "# ")
-    assert made.startswith("import numpy as np\nK = 2\n")
+    made = solved(
+        stub,
+        'K = 2\n\n\ndef f(x):\n    """Other."""\n    y = K * x\n    return y',
+        "# ",
+        ["import x"],
+    )
+    assert made.startswith("import numpy as np\nimport x\nK = 2\n")
     assert '"""Says."""\n    # BEGIN SOLUTION\n    y = K * x\n    return y\n    # END' in made
     assert "check" not in made
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 from pathlib import Path
 from typing import Any
@@ -162,6 +163,13 @@ def test_totals_are_those_counted_by_hand(
     table = pd.read_csv("t.csv")
     assert table.groupby("student")["points"].sum().to_dict() == counted
     assert not table["sentence"].str.contains("check itself failed").any()
+    sentences = table.set_index(["student", "exercise"])["sentence"]
+    assert "With θ₁ = π/2 alone" in sentences["wrong", "00.hand"]
+    assert sentences["nothing", "00.hand"] == "Not handed in."
+    assert sentences["empty", "00.hand"].startswith("Not yet")
+    assert f"of {len(counted)} passed.\n" in said.out
+    assert "✗" not in said.out
+    assert re.search(r"\d+ ×: With all angles 0 the arm lies along x", said.out)
     assert "broken.ipynb: left out" in said.err
     assert "not passed when judged again:\n  forger: 00.hand" in said.out
     assert f"{len(counted)} students, 4 exercises, 5 points in all." in said.out
@@ -261,6 +269,23 @@ def test_platforms_name_their_students(tmp_path: Path) -> None:
         ("bellbo", "12", 2),
     ]
     assert not skipped
+
+
+def test_where_nothing_starts_nobody_is_marked(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    hand_in(tmp_path, "ada", notebook(RIGHT), "a.ipynb")
+    monkeypatch.setattr("ikteach.publish.judging.MODULE", "ikteach.gone")
+    assert main(["grade", str(tmp_path), "--moodle", str(tmp_path / "m.csv")]) == 1
+    assert "No process for answers can be started" in capsys.readouterr().err
+    assert not (tmp_path / "m.csv").exists()
+
+
+def test_a_folder_with_the_package_in_it_can_be_graded() -> None:
+    with Judging(hidden=Path("/")) as judging:
+        assert judging.verdict(
+            "05.bound", f"{HEAD}{RIGHT['05.bound']}\nanswer = safe_damping"
+        ).passed
 
 
 def graded(tmp_path: Path, roster: str, *options: str) -> int:
