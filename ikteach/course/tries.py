@@ -36,7 +36,10 @@ def show_me(figure: Any, tries: Mapping[str, Setting]) -> "Tries":
 
 
 def now(figure: Any, names: Set[str]) -> Setting:
-    """Return the values of those controls and the places of those targets; buttons have none."""
+    """Return the values of those controls and targets.
+
+    Buttons have none.
+    """
     of_figure, places = controls(figure), targets(figure)
     values = {name: of_figure[name] for name in of_figure if name in names - {*places}}
     before = {name: one.value for name, one in values.items() if not hasattr(one, "click")}
