@@ -37,14 +37,12 @@ class Stroke:
     def draw(self, axes: Axes) -> None:
         """Draw it in a still picture."""
         style = (0, [float(x) / self.width for x in self.dashes.split()]) if self.dashes else "-"
-        (x, y), (x0, y0) = self.points[-1], self.points[-2]
+        end, before = self.points[-1], self.points[-2]
         label = self.name if self.legend else None
         axes.plot(*self.points.T, color=self.colour, ls=style, lw=self.width, label=label)
         if self.arrow:
             look = {"color": self.colour, "lw": self.width, "arrowstyle": "->"}
-            axes.annotate("", (x, y), (x0, y0), arrowprops=look)
-        if self.name and not self.legend:
-            axes.annotate(self.name, (x, y), textcoords="offset points", xytext=(5, 5))
+            axes.annotate("", end, before, arrowprops=look)
 
 
 class Plane(Living, anywidget.AnyWidget):
@@ -84,7 +82,23 @@ class Plane(Living, anywidget.AnyWidget):
         axes.grid(alpha=0.3)
         for line in self.drawn:
             line.draw(axes)
+        named = [line for line in self.drawn if line.name and not line.legend]
+        for line, place in zip(
+            named, self._apart([line.points[-1] for line in named]), strict=True
+        ):
+            axes.annotate(line.name, place, textcoords="offset points", xytext=(5, 5))
         if self.handle:
             axes.plot(*self.at, "o", ms=8, color="0.2")
         if any(line.legend for line in self.drawn):
             axes.legend(loc="upper left", fontsize=8)
+
+    def _apart(self, places: Sequence[Array]) -> list[tuple[float, float]]:
+        """Move names up or down where one would lie on another, as plane.js does."""
+        wide, row = 0.22 * self.half, 0.1 * self.half
+        free: list[tuple[float, float]] = []
+        for x, y in places:
+            step = -row if y > 0 else row  # towards the middle
+            while any(abs(x - one[0]) < wide and abs(y - one[1]) < row for one in free):
+                y += step
+            free.append((float(x), float(y)))
+        return free

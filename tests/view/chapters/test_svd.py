@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from ikteach.view.chapters.svd import SvdBench
 
@@ -69,4 +70,19 @@ def test_a_long_answer_is_told_to_leave_the_picture():
     bench = SvdBench(["pseudoinverse"])
     bench.controls["bend"].value = 3
     assert "beyond the picture" in bench.words
+    bench.close()
+
+
+def test_no_name_of_a_still_lies_on_another():
+    bench = SvdBench()
+    for bend in range(-180, 181, 30):
+        bench.controls["bend"].value = bend
+        for plane in (bench.steps, bench.places):
+            axes = Figure().subplots()
+            plane.draw(axes)
+            places = [np.array(text.xy) / plane.half for text in axes.texts if text.get_text()]
+            assert len(places) == 3
+            for i, place in enumerate(places):
+                apart = abs(np.reshape(places[i + 1 :], (-1, 2)) - place)
+                assert ((apart[:, 0] >= 0.2) | (apart[:, 1] >= 0.09)).all()
     bench.close()
