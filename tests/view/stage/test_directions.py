@@ -5,9 +5,10 @@ import pytest
 
 from ikteach.body import Effectors, figures, forward, locate
 from ikteach.motion.live.session import Session
-from ikteach.view import StillScene
+from ikteach.view import Scene, StillScene
 from ikteach.view.charts import outline
-from ikteach.view.stage.basics import Gaps, Pointers, TargetMarks
+from ikteach.view.raster.drawing import Drawing
+from ikteach.view.stage.basics import Figures, Gaps, Pointers, TargetMarks
 from ikteach.view.stage.layers import LAYERS
 from ikteach.view.stage.lengths import misses, units
 from ikteach.view.stage.stage import Stage, angle
@@ -19,6 +20,7 @@ WALKER = figures.walker()
 THETA = WALKER.tree.rest + np.r_[0.4, 0.1, 0.7, np.full(len(WALKER.tree) - 3, 0.1)]
 FRAMES = forward(WALKER.tree, THETA)
 HERE = locate(FRAMES, WALKER.effectors)
+ENDS = WALKER.effectors
 WAYS = np.flatnonzero(WALKER.effectors.w == 0)
 JOINT = FRAMES.positions[WALKER.effectors.joints[WAYS]]
 
@@ -153,3 +155,34 @@ def test_a_run_tells_points_in_lengths_and_directions_in_degrees():
     replay = Replay(run)
     assert replay.rows.header[3:-1][-2:] == ["pelvis.up [°]", "pelvis.ahead [°]"]
     replay.close()
+
+
+def test_a_direction_is_seen_through_the_body():
+    stage = Stage(*WALKER)
+    now = stage.now(WALKER.tree.rest, locate(forward(WALKER.tree, WALKER.tree.rest), ENDS))
+    alone, body, both = (
+        np.asarray(
+            Drawing(stage, (320, 280), finer=1).picture([kind(stage) for kind in kinds], now)
+        )
+        for kinds in ([Pointers], [Figures], [Pointers, Figures])
+    )
+    here = (alone != Drawing(stage, (320, 280), finer=1).picture([], now)).any(axis=-1)
+    assert here.sum() > 50
+    np.testing.assert_array_equal(both[here], alone[here])
+    assert (body[here] != alone[here]).any(axis=-1).mean() > 0.9
+    np.testing.assert_array_equal(both[~here], body[~here])
+
+
+def test_the_page_draws_a_direction_last_and_through_the_body():
+    scene = Scene(*WALKER)
+    arrows = [scene.targets[i] for i in WAYS]
+    rods = [
+        thing for one in scene._basics if one.layer.name == "directions" for thing in one.things
+    ]
+    assert len(rods) == 1
+    for thing in [*arrows, *rods]:
+        assert not thing.material.depthTest
+        assert thing.material.transparent
+        assert thing.renderOrder > 0
+    assert all(scene.targets[i].material.depthTest for i in range(WAYS[0]))
+    scene.close()
