@@ -1,6 +1,5 @@
 """A chapter as a page of HTML that needs no network: run, with pictures and MathML."""
 
-import asyncio
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import Any
 import nbformat
 from latex2mathml.converter import convert
 from nbclient import NotebookClient
+from nbclient.util import run_sync
 from nbconvert import HTMLExporter
 from nbconvert.filters.highlight import Highlight2HTML
 from nbconvert.filters.markdown_mistune import IPythonRenderer, MarkdownWithMath
@@ -61,7 +61,7 @@ async def executed(path: Path) -> Any:
 
 def page(path: Path, titles: Mapping[str, str]) -> str:
     """Run the notebook at `path`, and make its page; as `executed`."""
-    notebook = asyncio.run(executed(path))
+    notebook = run_sync(executed)(path)  # also where a loop runs already
     exporter = HTMLExporter(
         template_name="basic", exclude_input_prompt=True, exclude_output_prompt=True
     )

@@ -23,6 +23,7 @@ DOCUMENTS = {  # of the clone -> page of the site
     "CONTRIBUTING.md": "contributing.md",
     "CHANGELOG.md": "changelog.md",
     "tests/bench/README.md": "benches.md",
+    "ikteach/data/README.md": "data.md",
 }
 COLOUR = re.compile(r"\x1b\[[\d;]*m")  # of a terminal
 STILL = "The notebooks were not run for this copy: figures and numbers are left out."
