@@ -36,6 +36,7 @@ FIGURES = {
     "08": ("from ikteach.view.chapters.comparison import Race as Made", "", SCENE),
     "09": ("from ikteach.view import Workbench as Made", "", SCENE),
     "10": ("from ikteach.view.chapters.reach import Simulator as Made", "", SCENE),
+    "12": ("from ikteach.view.chapters.robots import robot_player as Made", "", SCENE),
     "11": ("from ikteach.view.chapters.beyond import WalksPlayer as Made", "", SCENE),
 }
 
