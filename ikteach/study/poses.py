@@ -9,7 +9,7 @@ from ikteach.motion.paths.walk import turned
 from ikteach.motion.step import step
 
 NEAR = 0.01  # a frame is there when no part of it is farther [m]
-MOST = 1000  # ticks
+LONGEST = 1000  # ticks
 
 
 def ticks_to_turn(figure: Figure, start: Array, length: float, *, degrees: float = 60.0) -> int:
@@ -25,11 +25,11 @@ def ticks_to_turn(figure: Figure, start: Array, length: float, *, degrees: float
     R = turned("y", np.asarray(degrees))
     targets = np.stack([place, *(R @ arrow for arrow in arrows)])
     theta, weights = start, [1.0, length, length]
-    for tick in range(MOST):
+    for tick in range(LONGEST):
         if np.linalg.norm(targets - locate(forward(tree, theta), effectors), axis=1).max() < NEAR:
             return tick
         theta = step(tree, theta, effectors, targets, "dls", weights=weights).theta
-    return MOST
+    return LONGEST
 
 
 def feet_off(figure: Figure, start: Array, weight: float, *, steps: int = 600) -> float:

@@ -2,16 +2,14 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-import ikteach
 from ikteach.arrays import Array
 from ikteach.body import Effectors, Tree, forward, locate
 from ikteach.body.figures import BALL, HAND, HEEL, Figure, walker
-from ikteach.formats.urdf import Robot, read_urdf
+from ikteach.formats.urdf import ARM, Robot, read_urdf
 from ikteach.motion.live.session import Session
 from ikteach.motion.path import Path as Motion
 from ikteach.motion.paths.walk import turned
@@ -26,7 +24,6 @@ from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets.layout import Arranged
 from ikteach.view.widgets.prose import Prose
 
-ARM = Path(ikteach.__file__).parent / "data" / "arm7.urdf"
 TOOL, ARROW = "tool", 0.25  # a direction of 1 m is drawn as long as that [m]
 AHEAD, UP = (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)
 Values = Mapping[str, float]
@@ -69,7 +66,7 @@ class AskedPlayer(Live):
         options: dict[str, Any] = {"iterations": 2, "weights": weights(first), "start": start}
         session = Session(figure, path, SOLVERS, method="sdls", **options)
         self.rest = figure, session.start
-        self._seen_at = drawable(figure)
+        self._seen_at = as_points(figure)
         scene = Scene(session.tree, self._seen_at, slot=None)
         super().__init__(session, scene, slot, Strips(session))
         self.panel, self._table = self._make_panel(sliders), Prose()
@@ -146,7 +143,7 @@ class AskedPlayer(Live):
         self._table.value = session_table(self.session, self.session.method)
 
 
-def drawable(figure: Figure) -> Effectors:
+def as_points(figure: Figure) -> Effectors:
     """Return the effectors as points.
 
     A direction is a point ahead of the first point on its joint.

@@ -5,12 +5,11 @@ import pytest
 
 from ikteach import forward, jacobian, locate
 from ikteach.body.partials import by_differences
-from ikteach.formats.urdf import read_urdf
+from ikteach.formats.urdf import ARM, read_urdf
 from ikteach.study.poses import feet_off, ticks_to_turn
 from ikteach.view.chapters.robots import (
-    ARM,
     ARROW,
-    drawable,
+    as_points,
     robot_player,
     standing_player,
     upright,
@@ -55,7 +54,7 @@ def test_a_direction_is_drawn_on_its_body(player):
     gaps = np.linalg.norm(now.targets[0] - now.effectors[0], axis=-1)
     wanted = np.where(effectors.w == 1, 1, ARROW) * player.session.error
     assert gaps == pytest.approx(wanted, abs=1e-9)
-    assert (drawable(player.rest[0]).w == 1).all()
+    assert (as_points(player.rest[0]).w == 1).all()
 
 
 def test_an_upright_robot_is_the_same_robot():
