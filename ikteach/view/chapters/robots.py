@@ -156,7 +156,7 @@ def as_points(figure: Figure) -> Effectors:
     return Effectors.of(tree, points)
 
 
-def upright(robot: Robot) -> Robot:
+def with_y_up(robot: Robot) -> Robot:
     """Turn a robot, whose z is up, so that y is."""
     A = turned("x", np.asarray(-90.0))
     rows = [
@@ -176,7 +176,7 @@ def arm_with_frame() -> Figure:
 
     A point, and two directions of 1 m: what the weight of a direction is then its length.
     """
-    robot = upright(read_urdf(ARM))
+    robot = with_y_up(read_urdf(ARM))
     tree = robot.tree
     at = robot.effectors.names.index(TOOL)
     joint, point = tree.names[robot.effectors.joints[at]], robot.effectors.offsets[at]

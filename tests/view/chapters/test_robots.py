@@ -12,7 +12,7 @@ from ikteach.view.chapters.robots import (
     as_points,
     robot_player,
     standing_player,
-    upright,
+    with_y_up,
 )
 
 
@@ -59,7 +59,7 @@ def test_a_direction_is_drawn_on_its_body(player):
 
 def test_an_upright_robot_is_the_same_robot():
     robot = read_urdf(ARM)
-    turned = upright(robot)
+    turned = with_y_up(robot)
     rng = np.random.default_rng(5)
     theta = rng.uniform(-1, 1, (5, len(robot.tree)))
     ours = locate(forward(turned.tree, theta), turned.effectors)
