@@ -26,6 +26,7 @@ from ikteach.formats.source import MOST_JOINTS, content
 from ikteach.names import unknown
 
 LARGEST_URDF = 16 * 2**20  # bytes of a file
+ARM = Path(__file__).parents[1] / "data" / "arm7.urdf"  # an arm of seven hinges
 MOVES = {"revolute", "continuous", "prismatic"}
 
 

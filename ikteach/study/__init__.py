@@ -7,6 +7,7 @@ directions  one step by singular directions (chapter 6)
 reach       the simulator of chapter 10
 gaits       how natural a run is (chapter 11)
 walks       three walks of one body, to be compared (chapter 11)
+poses       frames that turn and feet that give way (chapter 12)
 experiment  runs made to be compared, starts, counts and times
 trials      the fair experiment of chapter 8
 verdicts    rules by which its table says whether a sentence holds

@@ -43,6 +43,7 @@ FIGURES = {
         "['pseudoinverse', 'dls']",
         PLANES,
     ),
+    "12": ("from ikteach.view.chapters.robots import robot_player as Made", "", SCENE),
     "11": ("from ikteach.view.chapters.beyond import WalksPlayer as Made", "", SCENE),
 }
 BESIDE = [name for name in FIGURES if FIGURES[name][2] != CHART and name != "01"]

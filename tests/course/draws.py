@@ -190,6 +190,20 @@ def score(rng: Random) -> Any:
     return rng.normal(0, 30, (c, s, 51)), rng.normal(0, 30, (c, 51))
 
 
+def direction(rng: Random) -> Any:
+    v, s = rng.normal(size=(2, 3))
+    return v / np.linalg.norm(v), s, bool(rng.random() < 0.5)
+
+
+def lock(rng: Random) -> Any:
+    return "".join(rng.permutation(list("XYZ"))), float(rng.uniform(-4, 4))
+
+
+def held(rng: Random) -> Any:
+    C, R = (np.linalg.qr(rng.normal(size=(3, 3)))[0] for _ in range(2))
+    return C, *rng.normal(size=(2, 3)), R, rng.normal(size=3)
+
+
 DRAWS = {
     "00.hand": hand,
     "00.reach": reach,
@@ -216,6 +230,9 @@ DRAWS = {
     "11.turn": turn,
     "11.stands": stands,
     "11.score": score,
+    "12.column": direction,
+    "12.sigma": lock,
+    "12.fixed": held,
 }
 
 

@@ -27,6 +27,7 @@ from ikteach.view import (
 from ikteach.view.chapters.comparison import EQUAL, OWN, Race
 from ikteach.view.chapters.dls import tradeoff_bench
 from ikteach.view.chapters.pseudoinverse import CapPlayer
+from ikteach.view.chapters.robots import robot_player, standing_player
 from ikteach.view.chapters.sdls import spectrum_bench
 from ikteach.view.chapters.transpose import slope_bench
 
@@ -73,7 +74,7 @@ def shaken(*caps: float | None) -> list[np.ndarray]:
 
 def test_there_is_a_row_for_each_chapter() -> None:
     _, _, chapters = TEXT.partition("## Chapter by chapter")
-    assert re.findall(r"^\| (\d+) \|", chapters, re.MULTILINE) == [str(n) for n in range(12)]
+    assert re.findall(r"^\| (\d+) \|", chapters, re.MULTILINE) == [str(n) for n in range(13)]
 
 
 def test_what_students_are_told_to_write_is_collected(
@@ -266,3 +267,31 @@ def test_11_targets_are_met_and_the_knees_are_wrong() -> None:
     assert measured()["clearance"] < 0.5
     assert measured()["score"] < 8
     player.close()
+
+
+def test_12_the_feet_give_way_less_and_a_frame_turns() -> None:
+    player = standing_player()
+    session = player.session
+
+    def errors(ticks: int = 300) -> dict[str, float]:
+        for _ in range(ticks):
+            session.tick()
+        return dict(zip(session.effectors.names, session.error, strict=True))
+
+    put(player, method="dls", z=1.4, y=1.2, feet=1)
+    even = errors()
+    assert min(even["ball.l"], even["ball.r"]) == pytest.approx(0.01, abs=0.005)
+    put(player, feet=10)
+    firm = errors()
+    assert max(firm["ball.l"], firm["ball.r"]) < 1e-3
+    assert firm["hand.r"] > even["hand.r"]
+    player.close()
+    arm = robot_player()
+    session = arm.session
+    put(arm, **{"method": "dls", "turn y": 60})
+    assert max(errors(60).values()) < 0.01
+    put(arm, **{"length": 0.01, "turn y": 0})
+    slow = errors(10)
+    assert slow["tool"] < 0.01
+    assert slow["tool.ahead"] > 0.3
+    arm.close()

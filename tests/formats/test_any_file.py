@@ -1,7 +1,5 @@
 """Files of anybody: whatever is in them, they are read or refused in one sentence."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -12,11 +10,11 @@ from test_bvh import LEG
 from ikteach import figures, forward, locate
 from ikteach.formats.bvh import read_bvh
 from ikteach.formats.gltf import write_glb
-from ikteach.formats.urdf import read_urdf
+from ikteach.formats.urdf import ARM, read_urdf
 from ikteach.motion.live.session import Session
 from ikteach.motion.track import track
 
-URDF = (Path(__file__).parents[1] / "data" / "arm7.urdf").read_text(encoding="utf-8")
+URDF = ARM.read_text(encoding="utf-8")
 SIGNS = [*"{}<>/&;#\"'=-.0 \n\r\t", "\x00", "\u2028", "\ud800", "\ufeff", "é", "²", "_"]
 KEYS = [
     "OFFSET",

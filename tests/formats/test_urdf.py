@@ -9,16 +9,16 @@ import pytest
 from numpy.testing import assert_allclose
 
 from ikteach import forward, jacobian
-from ikteach.formats.urdf import read_urdf
+from ikteach.formats.urdf import ARM, read_urdf
 
 DATA = Path(__file__).parents[1] / "data"
-TEXT = (DATA / "arm7.urdf").read_text(encoding="utf-8")
+TEXT = ARM.read_text(encoding="utf-8")
 POSES = json.loads((DATA / "arm7_frames.json").read_text(encoding="utf-8"))["poses"]
 
 
 @pytest.mark.parametrize("pose", POSES)
 def test_links_are_where_pinocchio_has_them(pose):
-    robot = read_urdf(DATA / "arm7.urdf")
+    robot = read_urdf(ARM)
     frames = forward(robot.tree, [pose["q"][name] for name in robot.tree.names])
     for name, link in pose["links"].items():
         p, R = robot.place(frames, name)

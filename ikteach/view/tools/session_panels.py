@@ -287,7 +287,10 @@ class MotionPanel(Panel):
         self._forget()
 
     def add(self, motion: Motion) -> None:
-        """Put a motion among those to choose from, and let the targets make it."""
+        """Let the targets make another motion.
+
+        From then on it is among those to choose from.
+        """
         if motion.name in (*MOTIONS, *WRITTEN, BY_HAND):
             raise ValueError(f"{motion.name!r} is a motion already: give the file another name")
         as_set(motion, self.session).on(self.session.tree, self.session.effectors)
