@@ -19,6 +19,20 @@ SAID = ".ikteach-said[role=status]"
 HAND = 3  # hand.l
 TWO_FRAMES = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
 
+ALONE = """from ikteach.body import figures
+from ikteach.view import Scene
+alone = Scene(*figures.planar_arm(3))
+alone.show([0.4, 0.5, 0.6], [[1.5, 1.5, 0]])
+alone.widget"""
+SIZES = """() => new Promise(done => {
+  const sizes = new Set();
+  function look(frames) {
+    const { width, height } = document.querySelector(".ikteach-stage").getBoundingClientRect();
+    sizes.add(`${width} by ${height}`);
+    if (frames) requestAnimationFrame(() => look(frames - 1)); else done([...sizes]);
+  }
+  look(20);
+})"""
 HUMAN = """import numpy as np
 from ikteach.body import figures, forward, jacobian, locate
 from ikteach.motion import gait, step
@@ -81,17 +95,30 @@ VBox([seven.widget, aim])"""
 
 
 @pytest.fixture(scope="module")
-def scene(lab: Lab, open_notebook: Any) -> Iterator[Notebook]:
-    cells = [nbformat.v4.new_code_cell(cell) for cell in (HUMAN, FOUR, ARM, WAYS)]
+def opened(lab: Lab, open_notebook: Any) -> Iterator[Notebook]:
+    cells = [nbformat.v4.new_code_cell(cell) for cell in (ALONE, HUMAN, FOUR, ARM, WAYS)]
     shutil.copy(Path(__file__).parents[1] / "data" / "arm7.urdf", lab.folder)
     book = nbformat.v4.new_notebook(cells=cells)
     book.metadata.kernelspec = {"name": "python3", "display_name": "Python 3"}
     nbformat.write(book, lab.folder / "scene.ipynb")
     notebook = open_notebook("scene.ipynb")
-    notebook.run_figure("scene = Scene")
+    notebook.run_figure("alone = Scene")
     notebook.page.wait_for_selector(".ikteach-stage", timeout=READY)
     yield notebook
     assert notebook.errors == []
+
+
+def test_a_scene_that_is_alone_in_its_cell_keeps_its_size(opened: Notebook) -> None:
+    assert opened.page.evaluate(SIZES) == ["540 by 480"]
+
+
+@pytest.fixture(scope="module")
+def scene(opened: Notebook) -> Notebook:
+    opened.kernel("None", "alone.close()")
+    opened.command("notebook:clear-all-cell-outputs")
+    opened.run_figure("scene = Scene")
+    opened.page.wait_for_selector(".ikteach-stage", timeout=READY)
+    return opened
 
 
 def shown(scene: Notebook, code: str) -> None:

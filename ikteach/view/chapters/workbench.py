@@ -271,7 +271,7 @@ class Workbench(Live):
         self._back_to_now()
         self.replay = Replay(run, self.scene, slot=None)
         self._aside.children = [self.replay]
-        self.replay.status.come()
+        self.replay.status.come(with_all=True)
         self.status.say("A run is looked at. Play, or “Back to now”, goes on where it stopped.")
 
     def _back_to_now(self) -> None:

@@ -45,7 +45,7 @@ class Driver(Living, anywidget.AnyWidget):
 
     _esm, _css = (
         script("view/webgl/driver.js"),
-        style("view/webgl/driver.css", "view/webgl/looking.css"),
+        style("view/webgl/driver.css", "view/webgl/looking.css", "view/widgets/layout.css"),
     )
     renderer = traitlets.Instance(Widget).tag(sync=True, **widget_serialization)
     nodes = traitlets.List(traitlets.Instance(Widget)).tag(sync=True, **widget_serialization)
