@@ -14,7 +14,7 @@ COMMANDS = {  # each a module with main(argv), which gives the exit code
     "collect": "ikteach.publish.collect",
     "docs": "ikteach.publish.docs",
     "film": "ikteach.publish.race",
-    "grade": "ikteach.publish.grade",
+    "grade": "ikteach.publish.grading.grade",
     "lecture": "ikteach.serve.lecture",
     "site": "ikteach.publish.site",
 }

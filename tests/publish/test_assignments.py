@@ -19,7 +19,7 @@ import pytest
 
 from ikteach.__main__ import main
 from ikteach.publish.assignments import solved
-from ikteach.publish.scheme import every_exercise
+from ikteach.publish.grading.scheme import every_exercise
 
 ROOT = Path(__file__).parents[2]
 FULL = bool(os.environ.get("IKTEACH_FULL"))

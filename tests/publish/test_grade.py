@@ -14,9 +14,9 @@ import pytest
 from ikteach.__main__ import main
 from ikteach.publish import builds
 from ikteach.publish.collect import SKIPPED
-from ikteach.publish.handed_in import answers, hand_ins
-from ikteach.publish.judging import Judging
-from ikteach.publish.scheme import every_exercise
+from ikteach.publish.grading.handed_in import answers, hand_ins
+from ikteach.publish.grading.judging import Judging
+from ikteach.publish.grading.scheme import every_exercise
 
 FULL = bool(os.environ.get("IKTEACH_FULL"))
 KEYS = ["00.hand", "01.column", "05.bound", "09.mix"]
@@ -148,7 +148,7 @@ def test_totals_are_those_counted_by_hand(
     folder, counted = handed_in
     before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("ikteach.publish.judging.PATIENCE", 1.0)
+    monkeypatch.setattr("ikteach.publish.grading.judging.PATIENCE", 1.0)
     Path("points.toml").write_text(f'title = "IK"\ndefault = 0\n{POINTS}')
     command = ["grade", str(folder), "--points", "points.toml"]
     assert main([*command, "--moodle", "m.csv", "--canvas", "c.csv", "--table", "t.csv"]) == SKIPPED
@@ -193,7 +193,7 @@ def test_every_solution_passes_from_its_notebook(tmp_path: Path) -> None:
 def test_without_bubblewrap_the_hook_says_no(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr("ikteach.publish.judging.bubblewrap", lambda: "")
+    monkeypatch.setattr("ikteach.publish.grading.judging.bubblewrap", lambda: "")
     victim = tmp_path / "victim"
     victim.write_text("here")
     with Judging() as judging:
@@ -275,7 +275,7 @@ def test_where_nothing_starts_nobody_is_marked(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     hand_in(tmp_path, "ada", notebook(RIGHT), "a.ipynb")
-    monkeypatch.setattr("ikteach.publish.judging.MODULE", "ikteach.gone")
+    monkeypatch.setattr("ikteach.publish.grading.judging.MODULE", "ikteach.gone")
     assert main(["grade", str(tmp_path), "--moodle", str(tmp_path / "m.csv")]) == 1
     assert "No process for answers can be started" in capsys.readouterr().err
     assert not (tmp_path / "m.csv").exists()

@@ -27,6 +27,7 @@ from ikteach.study.trials import trials
 from ikteach.view.chapters.comparison import Race, TrialsPlayer
 from ikteach.view.chapters.dls import tradeoff_bench
 from ikteach.view.chapters.pseudoinverse import CapPlayer
+from ikteach.view.chapters.robots import robot_player, standing_player
 from ikteach.view.chapters.sdls import spectrum_bench
 from ikteach.view.chapters.transpose import slope_bench
 from ikteach.view.live.bench import Bench, Shown
@@ -86,13 +87,16 @@ FIGURES: dict[Any, Callable[[], Any]] = {
     ikteach.view.Simulator: lambda: ikteach.view.Simulator(PlanarReach()),
     ikteach.view.StillScene: still,
     ikteach.view.SvdBench: ikteach.view.SvdBench,
+    ikteach.view.WalksPlayer: ikteach.view.WalksPlayer,
     ikteach.view.Workbench: ikteach.view.Workbench,
     CapPlayer: CapPlayer,
     Race: Race,
     TrialsPlayer: lambda: TrialsPlayer(some_trials()),
     Bench: lambda: Bench(lambda x: Shown(b"", ""), {"x": slider("x", 0, 0, 1, 1)}, slot="own"),
     slope_bench: slope_bench,
+    robot_player: robot_player,
     spectrum_bench: spectrum_bench,
+    standing_player: standing_player,
     tradeoff_bench: tradeoff_bench,
     Glass: lambda: Glass(Session()),
     Keeper: lambda: Keeper(Session()),

@@ -23,15 +23,15 @@ from ikteach.course.checking import Exercise, Verdict, find, judge
 from ikteach.course.deadline import TooLongError
 from ikteach.course.forms import WrongError
 from ikteach.files import bounded
-from ikteach.publish.apart import HIDDEN, receive, send
-from ikteach.publish.carried import unpacked
 from ikteach.publish.delivery import PACKAGE
+from ikteach.publish.grading.apart import HIDDEN, receive, send
+from ikteach.publish.grading.carried import unpacked
 from ikteach.publish.parser import RefusedError
 
 STARTING = 60.0  # [s] until Python runs and has its imports
 PATIENCE = 3.0  # times the seconds of the exercise: a machine that judges a class is a busy one
 LARGEST_REPLY = 64 * 2**20  # bytes
-MODULE = "ikteach.publish.apart"
+MODULE = "ikteach.publish.grading.apart"
 
 checking.OURS.add(__file__)  # no line of a student's
 

@@ -9,9 +9,9 @@ import pandas as pd
 
 from ikteach.course.checking import Verdict
 from ikteach.files import bounded
-from ikteach.publish.handed_in import HandIn
+from ikteach.publish.grading.handed_in import HandIn
+from ikteach.publish.grading.scheme import Scheme
 from ikteach.publish.parser import RefusedError
-from ikteach.publish.scheme import Scheme
 
 CANVAS = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section"]
 MOODLE = ["Identifier", "Full name", "Username"]

@@ -13,13 +13,13 @@ import pandas as pd
 
 from ikteach.course.checking import Verdict
 from ikteach.files import write_whole
-from ikteach.publish import gradebook
 from ikteach.publish.collect import SKIPPED, harmless, shown_text
-from ikteach.publish.gradebook import Graded
-from ikteach.publish.handed_in import HandIn, hand_ins
-from ikteach.publish.judging import Judging
+from ikteach.publish.grading import gradebook
+from ikteach.publish.grading.gradebook import Graded
+from ikteach.publish.grading.handed_in import HandIn, hand_ins
+from ikteach.publish.grading.judging import Judging
+from ikteach.publish.grading.scheme import Scheme, read_scheme
 from ikteach.publish.parser import Parser, RefusedError
-from ikteach.publish.scheme import Scheme, read_scheme
 
 Table = Callable[[list[Graded], Scheme, pd.DataFrame | None], pd.DataFrame]
 TABLES: dict[str, Table] = {

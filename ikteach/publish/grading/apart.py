@@ -24,7 +24,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from ikteach.publish.carried import packed
+from ikteach.publish.grading.carried import packed
 
 MORE_MEMORY = 2**30  # bytes beyond those that the imports have taken
 PROCESSOR = 120  # [s] of an answer
@@ -32,7 +32,7 @@ WRITTEN = 2**20  # bytes of a file
 LARGEST_REQUEST = 2**30  # bytes of a request
 SIZE = struct.Struct(">Q")
 SECRET = ("ikteach.course.solutions", "ikteach.course.exercises")
-HIDDEN = [Path(__file__).parents[1] / "course" / name for name in ("solutions", "exercises")]
+HIDDEN = [Path(__file__).parents[2] / "course" / name for name in ("solutions", "exercises")]
 WRITING = os.O_WRONLY | os.O_RDWR | os.O_APPEND | os.O_CREAT | os.O_TRUNC
 # What no answer needs, by the beginning of the event's name.
 REFUSED = (

@@ -1,0 +1,1 @@
+"""The answers of a class, judged again, each in a process of its own: points and gradebooks."""
