@@ -220,6 +220,7 @@ def test_chapter_7_by_keys_alone(gait: Notebook) -> None:
     gait.shot("hands_07_distances")
     keys.press("d")
     page.locator(".ikteach-far").wait_for(state="hidden", timeout=READY)
+    before = page.locator(CANVAS).first.evaluate("one => one.clientWidth")
     keys.press("f")
     page.wait_for_function("document.fullscreenElement !== null", timeout=READY)
     wide = settled(lambda: page.locator(CANVAS).first.evaluate("one => one.clientWidth"))
@@ -228,7 +229,7 @@ def test_chapter_7_by_keys_alone(gait: Notebook) -> None:
     gait.shot("hands_07_full")
     keys.press("f")
     page.wait_for_function("document.fullscreenElement === null", timeout=READY)
-    assert settled(lambda: page.locator(CANVAS).first.evaluate("one => one.clientWidth")) == 540
+    assert settled(lambda: page.locator(CANVAS).first.evaluate("one => one.clientWidth")) == before
     with page.expect_download(timeout=READY) as saved:
         keys.press("p")
     assert Path(saved.value.path()).read_bytes().startswith(b"\x89PNG")
