@@ -30,11 +30,13 @@ from ikteach.view.chapters.pseudoinverse import CapPlayer
 from ikteach.view.chapters.robots import robot_player, standing_player
 from ikteach.view.chapters.sdls import spectrum_bench
 from ikteach.view.chapters.transpose import slope_bench
+from ikteach.view.live.bands import Bands
 from ikteach.view.live.bench import Bench, Shown
 from ikteach.view.live.panel import slider
 from ikteach.view.live.strips import Strips
 from ikteach.view.tools.files import Keeper
 from ikteach.view.tools.inspector import Glass
+from ikteach.view.tools.motion_files import MotionFiles
 from ikteach.view.tools.recorder import Recorder
 from ikteach.view.tools.replay import Replay
 from ikteach.view.webgl.driver import Driver
@@ -100,6 +102,7 @@ FIGURES: dict[Any, Callable[[], Any]] = {
     tradeoff_bench: tradeoff_bench,
     Glass: lambda: Glass(Session()),
     Keeper: lambda: Keeper(Session()),
+    MotionFiles: lambda: MotionFiles(Session(), print),
     Recorder: lambda: Recorder(Session()),
     Replay: lambda: Replay(log()),
     Targets: lambda: Targets(ikteach.view.Scene(*arm()), [[1.0, 1.0, 0.0]]),
@@ -111,6 +114,7 @@ FIGURES: dict[Any, Callable[[], Any]] = {
 # Parts of figures: they live as long as what they are in, and have no slot of their own.
 PARTS: dict[Any, Callable[[], Any]] = {
     RotationBall: RotationBall,
+    Bands: lambda: Bands(["one", "other"]),
     Curve: Curve,
     Driver: lambda: ikteach.view.Scene(*arm(), slot=None).driver,
     Handles: lambda: Targets(ikteach.view.Scene(*arm(), slot=None), [[1, 1, 0]], slot=None).handles,
@@ -195,9 +199,9 @@ def test_none_is_forgotten() -> None:
     }
     assert len(imported) > 10
     assert imported <= known
-    # Of Simulator; of predict and quiz; of show_me.
+    # Of Simulator; of predict and quiz; of show_me; of robot_player and standing_player.
     within = {"ikteach.view.chapters.reach.CursorScene", "ikteach.course.widget.Question"}
-    within |= {"ikteach.course.buttons.Tries"}
+    within |= {"ikteach.course.buttons.Tries", "ikteach.view.chapters.robots.AskedPlayer"}
     assert all_that_live() - within <= known
 
 
