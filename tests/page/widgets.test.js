@@ -8,7 +8,7 @@ import { floats } from "../../ikteach/view/widgets/binary.js";
 import { nearest } from "../../ikteach/view/widgets/curve.js";
 import { projection, RADIUS } from "../../ikteach/view/widgets/globe.js";
 import { guarded } from "../../ikteach/view/widgets/guarded.js";
-import { apart, onPlane, underPoint } from "../../ikteach/view/widgets/plane.js";
+import { onPlane, overlap, underPoint } from "../../ikteach/view/widgets/plane.js";
 import { Element, Model } from "./page.js";
 
 test("numbers are read from a view that begins anywhere", () => {
@@ -100,28 +100,12 @@ test("an error in a callback is shown, and stops no other", async () => {
   mock.restoreAll();
 });
 
-test("no name of a plane lies on another, and each stays in the picture", () => {
-  assert.deepEqual(
-    apart([
-      [50, 40],
-      [200, 40],
-    ]),
-    [
-      [50, 40],
-      [200, 40],
-    ],
-  );
-  for (const y of [28, 160, 314]) {
-    const rows = apart([
-      [50, y],
-      [52, y + 3],
-      [60, y - 5],
-      [50, y],
-    ]).map((place) => place[1]);
-    rows.sort((a, b) => a - b);
-    for (let i = 1; i < rows.length; i++) assert.ok(rows[i] - rows[i - 1] >= 16);
-    assert.ok(rows[0] >= 20 && rows[3] <= 320);
-  }
+test("boxes overlap where they have a part in common, and not where they touch", () => {
+  const box = { x: 0, y: 0, width: 10, height: 4 };
+  assert.ok(overlap(box, { ...box, x: 9, y: 3 }));
+  assert.ok(overlap(box, { x: 2, y: 1, width: 1, height: 1 }));
+  assert.ok(!overlap(box, { ...box, x: 10 }));
+  assert.ok(!overlap(box, { ...box, y: -4 }));
 });
 
 test("a point of a plane is found again under the pointer, and never beyond the edges", () => {

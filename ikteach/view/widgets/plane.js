@@ -5,7 +5,6 @@ import { connected, listen, OWN_KEYS, svg, take } from "./dom.js";
 import { guarded } from "./guarded.js";
 
 const SIZE = 320; // of a side, in units of the drawing
-const [WIDE, ROW] = [36, 16]; // of a name
 const HEAD = 9; // of an arrow
 const ROW = 4; // by which names that meet are moved apart
 const FINE = 0.1; // of a key's step, with Shift
@@ -36,7 +35,6 @@ function render({ model, el }) {
     lines.replaceChildren(
       ...shown.flatMap((/** @type {Line} */ one) => line(one, half)),
       ...named.flatMap(entry),
-      ...names(shown, half),
     );
     spread([...lines.querySelectorAll("text")]);
     plane.setAttribute("aria-label", `${model.get("title")}. ${model.get("alt")}`);
@@ -109,66 +107,27 @@ function axes(model) {
 }
 
 /**
- * A line, with its arrow's head.
+ * A line, with its arrow's head and its name at the end.
  * @param {Line} line
  * @param {number} half
  */
-function line({ points, colour, arrow, ...look }, half) {
+function line({ points, colour, arrow, name, legend, ...look }, half) {
   const at = points.map((point) => onPlane(point, half));
   const d = `M${at.map((p) => p.join(" ")).join("L")}`;
   const made = [svg("path", { ...stroke({ colour, ...look }), d })];
-  const [end, before, angle] = tip(at);
-  if (arrow && Math.hypot(end[0] - before[0], end[1] - before[1]) > 1)
-    made.push(svg("path", { d: head(end, angle), fill: colour }));
-  return made;
-}
-
-/**
- * The end of a line, the point before it, and the way from there.
- * @param {number[][]} at
- * @returns {[number[], number[], number]}
- */
-function tip(at) {
   const end = at[at.length - 1];
   const before = at[at.length - 2] ?? end;
-  return [end, before, Math.atan2(end[1] - before[1], end[0] - before[0])];
+  const angle = Math.atan2(end[1] - before[1], end[0] - before[0]);
+  if (arrow && Math.hypot(end[0] - before[0], end[1] - before[1]) > 1)
+    made.push(svg("path", { d: head(end, angle), fill: colour }));
+  if (!name || legend) return made;
+  const [x, y] = [end[0] + 14 * Math.cos(angle), end[1] + 14 * Math.sin(angle) + 4];
+  const where = { x: clamp(x, 24, SIZE - 24), y: clamp(y, 28, SIZE - 6), "text-anchor": "middle" };
+  return [...made, svg("text", { ...where, class: "ikteach-name" }, name)];
 }
 
 /**
- * The names at the ends of lines, those of the legend left out.
- * @param {Line[]} lines
- * @param {number} half
- */
-function names(lines, half) {
-  const named = lines.filter(({ name, legend }) => name && !legend);
-  const places = named.map(({ points }) => {
-    const [[x, y], , angle] = tip(points.map((point) => onPlane(point, half)));
-    const [right, below] = [x + 14 * Math.cos(angle), y + 14 * Math.sin(angle) + 4];
-    return [clamp(right, 24, SIZE - 24), clamp(below, 28, SIZE - 6)];
-  });
-  const look = { "text-anchor": "middle", class: "ikteach-name" };
-  return apart(places).map(([x, y], i) => svg("text", { x, y, ...look }, named[i].name));
-}
-
-/**
- * Places of names, moved up or down, towards the middle, where one would lie on another.
- * @param {number[][]} places
- */
-export function apart(places) {
-  /** @type {number[][]} */
-  const free = [];
-  for (const [x, y] of places) {
-    const row = y > SIZE / 2 ? -ROW : ROW;
-    let at = y;
-    while (free.some((one) => Math.abs(x - one[0]) < WIDE && Math.abs(at - one[1]) < ROW))
-      at += row;
-    free.push([x, at]);
-  }
-  return free;
-}
-
-/**
- * Move names down until none stands on another; those of the legend, the last, stay.
+ * Move names towards the middle until none stands on another; those of the legend, the last, stay.
  * @param {SVGTextElement[]} names
  */
 function spread(names) {
@@ -176,7 +135,8 @@ function spread(names) {
   const taken = [];
   for (const name of names.reverse()) {
     const box = name.getBBox();
-    while (taken.some((one) => overlap(one, box))) box.y += ROW;
+    const row = box.y > SIZE / 2 ? -ROW : ROW;
+    while (taken.some((one) => overlap(one, box))) box.y += row;
     name.setAttribute("y", `${Number(name.getAttribute("y")) + box.y - name.getBBox().y}`);
     taken.push(box);
   }
