@@ -8,6 +8,7 @@ import json
 import linecache
 import os
 import re
+import signal
 import subprocess
 import sys
 import threading
@@ -402,7 +403,7 @@ def test_a_script_is_told_in_plain_words(folder: Path) -> None:
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.stdout.count("✗ ") == 2
     assert done.stdout.count("✓ `column` passes every check.") == 1
-    assert "Hint 1 of 3: Which two directions" in done.stdout
+    assert "Hint 1 of 3: " in done.stdout
     assert "AssertionError: told" in done.stderr
 
 
@@ -667,8 +668,12 @@ def test_an_interrupt_by_the_student_goes_through() -> None:
             pass
         return 2 * x
 
-    with pytest.raises(KeyboardInterrupt):
-        check("xx.double", interrupted)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # whoever started the tests
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            check("xx.double", interrupted)
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 @pytest.mark.parametrize(

@@ -254,7 +254,7 @@ def test_11_targets_are_met_and_the_knees_are_wrong() -> None:
     assert max(far().values()) < 0.02
 
     def measured() -> pd.Series:
-        said = player._table.value
+        said = player._table.value.replace("−", "-")
         heads = re.findall(r"<th>([^<]+)</th>", said.partition("<tbody>")[0])
         row = said.partition("natural</th>")[2].partition("</tr>")[0]
         return pd.Series(map(float, re.findall(r"<td>([^<]+)</td>", row)), heads)
