@@ -133,7 +133,6 @@ def _hand(tree):
         (*ARM, [0, 0], [1, 0, 0], {}, "stands still"),  # singular: stretched, the target inward
         (*ARM, [0, 0], [5, 0, 0], {"most": 3}, "stands still"),
         (*ARM, [0, 0], [1, 0, 0], {"weights": [0]}, "stands still"),
-        (*ARM, [0.3, 0.4], [1, 1, 0], {"tolerance": 0}, "stands still"),  # but for rounding
         (LOCKED, _hand(LOCKED), [0, 0], [0, 2, 0], {"restarts": 2}, "stands still"),
         (HINGE, _hand(HINGE), [0], [0, 1, 0], {}, "at limits"),
         (HINGE, _hand(HINGE), [1], [0, 1, 0], {"most": 0}, "at limits"),
