@@ -36,7 +36,7 @@ CHAPTERS = [
     Chapter("04_pseudoinverse.ipynb", "player = CapPlayer()", "player", CANVAS),
     Chapter("05_dls.ipynb", "bench = tradeoff_bench()", "bench", PICTURE),
     Chapter("06_sdls.ipynb", "bench = spectrum_bench()", "bench", PICTURE),
-    Chapter("08_comparison.ipynb", "race = Race()", "race", CANVAS),
+    Chapter("08_comparison.ipynb", "race, walk = Race()", "race", CANVAS),
 ]
 ENDS = """from ikteach.view.widgets.closing import occupant
 

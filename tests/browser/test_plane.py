@@ -65,7 +65,7 @@ def test_a_hand_is_pulled_by_keys_and_the_sliders_follow(open_notebook: Any) -> 
     notebook.page.keyboard.press("Tab")
     for _ in range(4):
         notebook.page.keyboard.press("ArrowUp")
-    notebook.settle(f"bool(poser.targets.positions[0][1] > {before[1]} + 0.1)", True)
+    notebook.settle(f"bool(poser.targets.positions[0][1] > {before[1]} + 0.02)", True)
     assert notebook.kernel("sum(bool(c.value) for c in poser.controls.values())") > 0
     notebook.shot("00_pulled")
     assert notebook.kernel("poser.status.wrong") == ""

@@ -3,7 +3,6 @@
 import io
 import shutil
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import nbformat
@@ -11,6 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from ikteach.formats import urdf
 from ikteach.view.stage.layers import LAYERS
 from tests.browser.conftest import CANVAS, DRIVER, READY, Lab, Notebook, pixels
 
@@ -97,7 +97,7 @@ VBox([seven.widget, aim])"""
 @pytest.fixture(scope="module")
 def opened(lab: Lab, open_notebook: Any) -> Iterator[Notebook]:
     cells = [nbformat.v4.new_code_cell(cell) for cell in (ALONE, HUMAN, FOUR, ARM, WAYS)]
-    shutil.copy(Path(__file__).parents[1] / "data" / "arm7.urdf", lab.folder)
+    shutil.copy(urdf.ARM, lab.folder)
     book = nbformat.v4.new_notebook(cells=cells)
     book.metadata.kernelspec = {"name": "python3", "display_name": "Python 3"}
     nbformat.write(book, lab.folder / "scene.ipynb")

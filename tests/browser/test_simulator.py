@@ -58,8 +58,8 @@ def share(picture: np.ndarray, colour: list[int], at: np.ndarray, radius: int = 
     return float(((part @ hue > 0.99 * length) & (length > 110)).mean())
 
 
-def place(reach: Notebook) -> np.ndarray:
-    """The pixel at which the cursor is seen."""
+def place(reach: Notebook, picture: np.ndarray) -> np.ndarray:
+    """The pixel of the picture at which the cursor is seen."""
     centre = "player.scene.stage.extent.centre.tolist()"
     eye, cursor, at = map(
         np.array,
@@ -69,8 +69,9 @@ def place(reach: Notebook) -> np.ndarray:
     right = np.cross([0, 1, 0], back)
     right /= np.linalg.norm(right)
     x, y, z = np.array([right, np.cross(back, right), back]) @ (cursor - eye)
-    half = 240 / np.tan(np.radians(45 / 2))
-    return np.array([270 + half * x / -z, 240 - half * y / -z])
+    height, width = picture.shape[:2]
+    half = height / 2 / np.tan(np.radians(45 / 2))
+    return np.array([width / 2 + half * x / -z, height / 2 - half * y / -z])
 
 
 def word(reach: Notebook, words: str) -> None:
@@ -83,7 +84,7 @@ def test_a_white_cursor_the_hand_arrives_and_is_seen_there(reach: Notebook) -> N
     word(reach, "white")
     word(reach, "within reach of the right arm")
     picture = pixels(reach.shot("10_white", CANVAS))
-    at = place(reach)
+    at = place(reach, picture)
     assert share(picture, WHITE, at, 8) > 0.5
     assert share(picture, SKIN, at) > 0.04
     reach.shot("10_page")
@@ -101,7 +102,7 @@ def test_out_of_reach_it_is_red_and_the_arm_goes_back_to_rest(reach: Notebook) -
     assert reach.kernel(f"float({rest}[{SESSION}.body.arm('r')].max())") < 1e-9
     drawn(reach)
     picture = pixels(reach.shot("10_red", CANVAS))
-    at = place(reach)
+    at = place(reach, picture)
     assert share(picture, RED, at, 8) > 0.5
     assert share(picture, SKIN, at) == 0
 
@@ -115,7 +116,7 @@ def test_back_within_reach_it_is_white_and_the_hand_comes(reach: Notebook) -> No
     reach.settle(f"{HAND}.words.startswith('arrived')", True)
     drawn(reach)
     picture = pixels(reach.shot("10_white_again", CANVAS))
-    assert share(picture, SKIN, place(reach)) > 0.04
+    assert share(picture, SKIN, place(reach, picture)) > 0.04
 
 
 def test_the_head_follows_the_cursor_up(reach: Notebook) -> None:

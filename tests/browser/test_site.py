@@ -221,7 +221,7 @@ def test_what_is_missing_is_said_and_nothing_is_left_behind(
 
 def test_a_chapter_opens_as_it_is_and_finds_our_package(lite: Lite) -> None:
     names = lite.page.locator(".jp-DirListing-itemText").all_inner_texts()
-    assert [name for name in names if name.endswith(".ipynb")] == list(chapters(NOTEBOOKS))
+    assert [name for name in names if name.endswith(".ipynb")] == sorted(chapters(NOTEBOOKS))
     lite.page.wait_for_function(
         "window.jupyterapp.shell.currentWidget.sessionContext.session.kernel.info", timeout=START
     )

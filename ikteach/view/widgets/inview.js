@@ -7,7 +7,7 @@ const MOVES = ["wheel", "pointerdown", "keydown", "touchstart"]; // of a reader 
 const PANEL = ".jp-WindowedPanel-outer"; // what scrolls a notebook in JupyterLab
 
 /**
- * Show the whole output of a cell that was run a moment ago, or its upper end.
+ * Show all outputs of a cell that was run a moment ago, or their upper end.
  * @param {Element} el a widget in the output, once it is in the page
  */
 export function showWhenRun(el) {
@@ -16,7 +16,8 @@ export function showWhenRun(el) {
   if (!(output instanceof HTMLElement) || !cell || output.dataset.ikteachShown) return;
   output.dataset.ikteachShown = "true"; // by the first of its widgets, for all of them
   const here = [cell, cell.nextElementSibling]; // Shift + Enter goes on to the next cell
-  if (here.some((one) => one?.matches(".jp-mod-active"))) keepInView(output);
+  const all = output.closest(".jp-OutputArea") ?? output; // a figure, and below it what to try
+  if (here.some((one) => one?.matches(".jp-mod-active"))) keepInView(all);
 }
 
 /**
