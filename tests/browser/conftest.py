@@ -148,6 +148,7 @@ class Notebook:
         """Run the cell with this text in it, and wait until its figure is drawn."""
         self.run_cell(cell)
         self.page.wait_for_selector(f"{DRIVER}[data-frame]", timeout=READY)
+        self.page.keyboard.press("Shift")  # who does anything is no longer kept at the figure
 
     def press(self, button: str) -> None:
         self.page.get_by_role("button", name=button, exact=True).click()
