@@ -11,7 +11,7 @@
 export function fit({ renderer }, inside) {
   const [width, height] = [renderer.get("_width"), renderer.get("_height")];
   const observer = new ResizeObserver(([{ target }]) => {
-    for (const one of Object.values(renderer.views))
+    for (const one of Object.values(renderer.views ?? {})) // Lab calls late, it may be closed
       one.then((view) => view.el === target && draw(view, target));
   });
   /** @type {Timer} */
