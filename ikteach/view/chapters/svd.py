@@ -20,6 +20,7 @@ from ikteach.view.widgets.plane import Plane, Stroke
 
 SHOULDER = np.radians(20)  # [rad] of the first link; it turns both ellipse and arm, no more
 STEPS, PLACES = 1.5, 2.6  # [rad], [m] from the middle of a plane to its edges
+FINE = 0.005  # of a slider, and of a key with Shift: else the page would move the point [rad, m]
 DASHES = ("", "7 4", "2 3", "9 3 2 3", "1 5")  # of methods: colour is never the only sign
 
 
@@ -44,11 +45,11 @@ class SvdBench(Bench):
             "bend": slider("bend of the elbow [°]", 20 if self.methods else 60, -180, 180, 1)
         }
         if self.methods:
-            controls["x"] = slider("error e, x [m]", -0.15, -PLACES, PLACES, 0.01)
-            controls["y"] = slider("error e, y [m]", -0.1, -PLACES, PLACES, 0.01)
+            controls["x"] = slider("error e, x [m]", -0.15, -PLACES, PLACES, FINE)
+            controls["y"] = slider("error e, y [m]", -0.1, -PLACES, PLACES, FINE)
         else:
-            controls["x"] = slider("Δθ₁, shoulder [rad]", 0.8, -STEPS, STEPS, 0.01)
-            controls["y"] = slider("Δθ₂, elbow [rad]", 0.6, -STEPS, STEPS, 0.01)
+            controls["x"] = slider("Δθ₁, shoulder [rad]", 0.8, -STEPS, STEPS, FINE)
+            controls["y"] = slider("Δθ₂, elbow [rad]", 0.6, -STEPS, STEPS, FINE)
         planes = [self.steps, self.places]
         super().__init__(self._show, controls, slot=slot, planes=planes)
         self.held.observe(lambda _: self._after(self._dragged), "at")
