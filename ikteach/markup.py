@@ -31,6 +31,11 @@ class Markup(str):
         return Markup(super().__add__(escaped(other)))
 
 
+def minus(number: str) -> str:
+    """Write a number with the sign of minus, which is as wide as that of plus."""
+    return number.replace("-", "−")
+
+
 def escaped(text: object) -> Markup:
     """Turn text into HTML that shows it; Markup stays."""
     return text if isinstance(text, Markup) else Markup(html.escape(visible(str(text))))

@@ -10,7 +10,7 @@ import pytest
 from ikteach.view.widgets.closing import living, making
 from tests.view.test_closing import FIGURES
 
-CAMERA = {"turn [°]", "tilt [°]"}  # it stands where it was turned to; `Panel` forgives the page
+CAMERA = {"turn [°]", "tilt [°]"}  # it stands where it was turned to; `Exact` forgives the page
 SLIDERS = widgets.FloatSlider | widgets.IntSlider | widgets.FloatLogSlider
 
 

@@ -5,6 +5,7 @@ from typing import Any
 from ikteach.arrays import Array
 from ikteach.body import forward, locate
 from ikteach.body.figures import Figure
+from ikteach.markup import minus
 from ikteach.view.live.bench import Bench, Shown
 from ikteach.view.live.joints import Joints
 from ikteach.view.live.pull import handles_of, pull
@@ -46,10 +47,10 @@ def _places(figure: Figure, s: Array, unit: Lengths) -> Shown:
     """Say where the effectors s (k, 3) are."""
     tree, effectors = figure
     places = list(zip(effectors.names, s, strict=True))
-    rows = [[name, *(unit.number(x, 3) for x in place)] for name, place in places]
+    rows = [[name, *(minus(unit.number(x, 3)) for x in place)] for name, place in places]
     heads = ["", "x (left)", "y (up)", "z (forward)"]
     words = ", ".join(
-        f"{name} ({', '.join(unit.number(x, 2) for x in place)})" for name, place in places
+        f"{name} ({', '.join(minus(unit.number(x, 2)) for x in place)})" for name, place in places
     )
     return Shown(
         b"",

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from ikteach.arrays import Array
 from ikteach.body import forward, jacobian, locate
 from ikteach.body.figures import planar_arm
+from ikteach.markup import minus
 from ikteach.motion.methods import Methods, methods_of
 from ikteach.solvers import ask
 from ikteach.solvers.circle import Image, along, image
@@ -142,4 +143,4 @@ def _path(first: Array, to: Array) -> Stroke:
 
 
 def _pair(values: Array) -> str:
-    return "({:.2f}, {:.2f})".format(*(np.round(values, 2) + 0.0)).replace("-", "−")  # no −0
+    return minus("({:.2f}, {:.2f})".format(*(np.round(values, 2) + 0.0)))  # no −0

@@ -9,7 +9,7 @@ import numpy as np
 from ikteach.arrays import Array
 from ikteach.body.extent import extent
 from ikteach.body.figures import TOGETHER, Figure
-from ikteach.markup import plain
+from ikteach.markup import minus, plain
 from ikteach.view.live.panel import slider
 from ikteach.view.stage.lengths import Lengths, digits_of, round_step
 
@@ -103,7 +103,7 @@ class Dial(NamedTuple):
 
     def slider(self, name: str) -> Any:
         """Make a slider for it, with its ends in its label."""
-        ends = f"{self.low:.4g}…{self.high:.4g}".replace("-", "−")  # as the slider writes it
+        ends = minus(f"{self.low:.4g}…{self.high:.4g}")  # as the slider writes it
         label = plain(f"{name} ({ends}{self.unit})")
         digits = f".{digits_of(self.step)}f"
         look = {"width": "auto", "label_width": "175px", "readout_format": digits}

@@ -1,11 +1,12 @@
 """Panels: named controls that carry what they do, and the one factory for each kind of control."""
 
 from collections.abc import Callable, Mapping, Sequence
-from math import inf, log10
+from math import inf
 from typing import Any, NamedTuple
 
 import ipywidgets as widgets
 
+from ikteach.view.live.sliders import LogSlider, Slider, WholeSlider
 from ikteach.view.widgets import doors
 
 Act = Callable[..., Any]
@@ -52,7 +53,6 @@ class Panel:
     ) -> None:
         self.title, self._shows, self._guard = title, shows, guard
         self.controls: dict[str, Any] = {}
-        self._put: dict[str, Any] = {}  # values from the program, which a page may have rounded
         self._quiet = False
         boxes = [self._box(row) for row in rows]
         if folded:
@@ -63,12 +63,9 @@ class Panel:
 
     @property
     def values(self) -> dict[str, Any]:
-        """The value of each control that has one.
-
-        It is the value before any rounding in the page.
-        """
+        """The value of each control that has one."""
         return {
-            name: self._put.get(name, control.value)
+            name: control.value
             for name, control in self.controls.items()
             if not isinstance(control, widgets.Button)
         }
@@ -84,7 +81,7 @@ class Panel:
                 control = self.controls[name]
                 if isinstance(control, widgets.FloatSlider | widgets.IntSlider):
                     control.min, control.max = min(control.min, value), max(control.max, value)
-                control.value = self._put[name] = value
+                control.value = value
         finally:
             self._quiet = False
 
@@ -107,46 +104,24 @@ class Panel:
         for name, one in row.items():
             control, act = one if isinstance(one, Does) else Does(one, None)
             self.controls[name] = control
-            self._listen(name, control, _idle if act is None else self._guard(act))
+            self._listen(control, _idle if act is None else self._guard(act))
         made = [self.controls[name] for name in row]
         return made[0] if len(made) == 1 else widgets.HBox(made, layout={"flex_flow": "row wrap"})
 
-    def _listen(self, name: str, control: Any, act: Act) -> None:
+    def _listen(self, control: Any, act: Act) -> None:
         if isinstance(control, widgets.Button):
             control.on_click(lambda _: act())
             return
-        self._put[name] = control.value
 
         def changed(change: Any) -> None:
-            if self._quiet:
-                return
-            old, new = change["old"], change["new"]
-            if isinstance(new, float) and abs(new - old) < 1e-9:  # the page's last bits
-                return
-            if name in self._put and self._put[name] == old and _rounded(control, old, new):
-                return
-            self._put.pop(name, None)
-            act(new)
+            if not self._quiet:
+                act(change["new"])
 
         control.observe(changed, "value")
 
 
 def _idle(_: Any) -> None:
     """Do nothing: the control is only read."""
-
-
-def _rounded(control: Any, old: Any, new: Any) -> bool:
-    """Whether the page only brought a slider from `old` to the nearest of its steps.
-
-    A page does so as soon as it shows a slider whose value is between two steps.
-    """
-    if not isinstance(control, widgets.FloatSlider | widgets.FloatLogSlider):
-        return False
-    if isinstance(control, widgets.FloatLogSlider):  # its steps are those of the exponent
-        old, new = log10(old) / log10(control.base), log10(new) / log10(control.base)
-    steps = round((old - control.min) / control.step)
-    nearest = min(control.min + steps * control.step, control.max)
-    return abs(new - nearest) < 1e-6 * control.step
 
 
 def slider(label: str, value: float, low: float, high: float, step: float, **look: Any) -> Any:
@@ -157,7 +132,7 @@ def slider(label: str, value: float, low: float, high: float, step: float, **loo
     step  whole numbers only, if it is an int
     look  `width` of the slider with its label, `label_width`, and traits of the slider
     """
-    kind = widgets.IntSlider if isinstance(step, int) else widgets.FloatSlider
+    kind = WholeSlider if isinstance(step, int) else Slider
     doors.within(f"the value of {label!r}", value, -inf, inf)
     low, high = min(low, value), max(high, value)
     return kind(value=value, min=low, max=high, step=step, **_look(label, **look))
@@ -171,7 +146,7 @@ def log_slider(
     Its steps are those of the exponent.
     """
     look = {"readout_format": ".3g"} | look
-    return widgets.FloatLogSlider(value=value, min=low, max=high, step=step, **_look(label, **look))
+    return LogSlider(value=value, min=low, max=high, step=step, **_look(label, **look))
 
 
 def choice(

@@ -7,7 +7,7 @@ import ipywidgets as widgets
 import pandas as pd
 import traitlets
 
-from ikteach.markup import Markup, escaped, plain, untouched
+from ikteach.markup import Markup, escaped, minus, plain, untouched
 from ikteach.view.widgets.closing import Living
 
 
@@ -27,7 +27,7 @@ def table(frame: pd.DataFrame, decimals: str, *, kind: str = "ikteach-table") ->
     shown = frame.rename(index=_plain, columns=_plain).rename_axis(index=None, columns=None)
 
     def number(value: float) -> str:
-        return decimals.format(value).replace("-", "−")
+        return minus(decimals.format(value))
 
     made = shown.to_html(float_format=number, na_rep="–", border=0, classes=kind)
     return Markup(made.replace("<th></th>", "<td></td>"))  # a corner is the head of nothing

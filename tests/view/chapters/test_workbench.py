@@ -41,7 +41,7 @@ def test_to_open_it_changes_nothing_and_logs_nothing(bench):
         for slider in panel.controls.values():
             if hasattr(slider, "step") and not hasattr(slider, "base"):
                 steps = round((slider.value - slider.min) / slider.step)
-                slider.value = slider.min + steps * slider.step
+                slider.set_state({"value": slider.min + steps * slider.step})
     assert bench.session.settings() == before
     assert said(bench) == []
 

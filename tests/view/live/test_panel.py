@@ -1,7 +1,5 @@
 """A panel acts when a person changes a control, and only then."""
 
-import math
-
 import pytest
 
 from ikteach.view.live.panel import (
@@ -54,35 +52,6 @@ def test_a_button_acts_and_has_no_value(heard):
     panel.controls["one"].click()
     assert heard == [()]
     assert panel.values == {}
-
-
-@pytest.mark.parametrize(
-    ("make", "rounded"),
-    [
-        (lambda: slider("γ max", math.pi / 4, 0.05, math.pi, 0.01), 0.79),
-        (lambda: slider("near the end", 0.999, 0.0, 1.0, 0.3), 0.9),
-        (lambda: log_slider("λ", 0.11, -3, 0, 0.02), 10**-0.96),
-    ],
-)
-def test_what_the_page_rounds_is_no_change(make, rounded, heard):
-    """A page brings a slider to the nearest of its steps as soon as it shows it."""
-    control = make()
-    panel, exact = panel_of(control, heard), control.value
-    control.value = rounded
-    assert heard == []
-    assert panel.values == {"one": exact}
-    control.value = control.max if not hasattr(control, "base") else 1.0
-    control.value = rounded
-    assert [value for (value,) in heard][1:] == [rounded]
-
-
-def test_the_last_bits_of_the_page_are_no_change(heard):
-    control = slider("y", -0.4, -1.3, -0.4, 0.01)
-    panel = panel_of(control, heard)
-    control.value = -0.88
-    control.value = -0.8799999999999999
-    assert heard == [(-0.88,)]
-    assert panel.values == {"one": control.value}
 
 
 def test_the_range_grows_where_it_must(heard):
