@@ -12,7 +12,7 @@ from tests.course import draws
 from tests.course.mutation import alike, mutants, tried
 from tests.course.test_exercises import OURS
 
-SAMPLE = None if os.environ.get("IKTEACH_FULL") else 25  # mutants of a solution
+SAMPLE = None if os.environ.get("IKTEACH_FULL") else 16  # mutants of a solution
 
 
 @pytest.fixture(autouse=True)

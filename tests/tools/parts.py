@@ -25,10 +25,16 @@ COMPUTING = [
 ]
 BROWSERS = ["tests/browser", "tests/engines"]
 KERNELS, RARER_KERNELS = ["Haswell", "Sandybridge"], ["SkylakeX", "Zen"]
-ROUNDED = ["tests/body", "tests/motion", "tests/solvers", "tests/course/test_prose.py"]
+ROUNDED = [  # what solves, and what is said of runs
+    *(f"tests/motion/test_{name}.py" for name in ("gait", "rank", "solve", "step", "tracking")),
+    *("tests/solvers", "tests/course/test_prose.py"),
+]
 STYLE = "tests/test_types.py"  # with the newest numpy, pandas, mypy and ruff alone
 NPM = ["npm", "--prefix", "tests/page"]
-TALKING = ["tests/course/test_teaching.py", "tests/test_notebooks.py"]
+RARER = [
+    *("tests/body", "tests/motion", "tests/solvers"),
+    *("tests/course/test_prose.py", "tests/course/test_teaching.py", "tests/test_notebooks.py"),
+]
 Command = Sequence[str]
 
 
@@ -113,11 +119,11 @@ def pytest(*arguments: str, python: str = sys.executable, nice: bool = True) -> 
     return [*(["nice", "-n", "19"] if nice else []), python, "-m", "pytest", *arguments]
 
 
-def kernel(name: str, *more: str) -> Part:
+def kernel(name: str, tests: Sequence[str]) -> Part:
     """What hangs on rounding, with another kernel of OpenBLAS."""
     return Part(
         f"rounded by {name}",
-        [pytest(*ROUNDED, *more)],
+        [pytest(*tests)],
         {"OPENBLAS_CORETYPE": name, "IKTEACH_FULL": ""},
         needs=[[sys.executable, "tests/tools/kernel.py", name]],
     )
@@ -164,12 +170,12 @@ def lanes(folder: Path, full: bool) -> list[list[list[Part]]]:
     beside = [
         Part("computing", [pytest(*COMPUTING, STYLE)]),
         page,
-        *(kernel(name, *(TALKING if full else [])) for name in KERNELS),
+        *(kernel(name, RARER if full else ROUNDED) for name in KERNELS),
         packages(folder, "lowest-direct", no_browser if full else [*COMPUTING, "tests/view"]),
     ]
     if full:
         browsers.append(engines)
-        beside += [kernel(name, *TALKING) for name in RARER_KERNELS]
+        beside += [kernel(name, RARER) for name in RARER_KERNELS]
         beside += [packages(folder, "highest", no_browser, python) for python in PYTHONS]
     return [[[servers]], [browsers, beside]]
 
