@@ -26,7 +26,7 @@ SKIPPED = 3  # the exit code when all went well, but for files that were left ou
 COLUMNS = 200  # of a log, and of the table
 SAID = 8  # answers that the summary names
 # Where a spreadsheet takes a text for a formula: at its beginning, and after what may begin a cell.
-FORMULA = re.compile(r"(^|(?<=[\t\r\n;,|]))(?=\s*[=+\-@＝＋－＠])|^(?=[\t\r\n])")
+FORMULA = re.compile(r"(^|(?<=[\t\r\n;]))(?=\s*[=+\-@＝＋－＠])|^(?=[\t\r\n])")
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 LEADING = ["student", "file", "kind", "key", "answer", "result", "right", "tries", "late", "at"]
 

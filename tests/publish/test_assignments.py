@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import nbformat
+import pandas as pd
 import pytest
 
 from ikteach.__main__ import main
@@ -134,37 +135,57 @@ def test_the_tools_themselves_give_these_points(built: Any, tools: Path, tmp_pat
     tool, notebooks, folder = built
     environment = os.environ | {"PATH": f"{tools}{os.pathsep}{os.environ['PATH']}"}
 
-    def run(*command: str) -> None:
-        subprocess.run([tools / command[0], *command[1:]], cwd=folder, env=environment, check=True)
+    def run(*command: object) -> None:
+        line = [tools / str(command[0]), *map(str, command[1:])]
+        done = subprocess.run(line, cwd=folder, env=environment, capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout + done.stderr
 
-    name = "00_figure"
-    if tool == "otter":
-        run("otter", "assign", f"{name}.ipynb", "dist")
-        given = nbformat.read(folder / "dist" / "student" / f"{name}.ipynb", as_version=4)
-    else:
-        run("nbgrader", "generate_assignment", name)
-        given = nbformat.read(folder / "release" / name / f"{name}.ipynb", as_version=4)
-    answers = [c for c in notebooks[name].cells if "BEGIN SOLUTION\n" in c.source]
-    good, wrong = given.copy(), nbformat.from_dict(json.loads(json.dumps(given)))
-    blank = [i for i, c in enumerate(given.cells) if re.match(r"import numpy", c.source)]
-    empty = nbformat.from_dict(json.loads(json.dumps(given)))
-    for i, answer in zip(blank, answers, strict=True):
-        good.cells[i].source = answer.source
-        wrong.cells[i].source = re.sub(r"return .*", "return 3.5", answer.source)
-    found = {}
-    for who, notebook in (("good", good), ("wrong", wrong), ("empty", empty)):
-        place = folder / "submitted" / who / name / f"{name}.ipynb"
-        place.parent.mkdir(parents=True)
-        nbformat.write(notebook, place)
+    found, wanted = {}, {}
+    for name, notebook in notebooks.items():
+        most = sum("assert check(" in cell.source for cell in notebook.cells)
+        wanted |= {(name, who): most * (who == "good") for who in ("good", "wrong", "empty")}
         if tool == "otter":
-            (zipped,) = (folder / "dist" / "autograder").glob("*.zip")
-            run("otter", "run", str(place), "-a", str(zipped), "-o", str(place.parent))
+            run("otter", "assign", f"{name}.ipynb", f"dist/{name}")
+        else:
+            run("nbgrader", "generate_assignment", name)
+        given = f"dist/{name}/student" if tool == "otter" else f"release/{name}"
+        places = handed_in(
+            folder, nbformat.read(folder / given / f"{name}.ipynb", 4), name, notebook
+        )
+        if tool == "nbgrader":
+            run("nbgrader", "autograde", name)
+            continue
+        (zipped,) = (folder / "dist" / name / "autograder").glob("*.zip")
+        for who, place in places.items():
+            run("otter", "run", place, "-a", zipped, "-o", place.parent)
             tests = json.loads((place.parent / "results.json").read_text())["tests"]
-            found[who] = sum(test.get("score", 0) for test in tests)
+            found[name, who] = sum(test.get("score", 0) for test in tests)
     if tool == "nbgrader":
-        run("nbgrader", "autograde", name)
-        run("nbgrader", "export", "--to", str(tmp_path / "grades.csv"))
-        rows = (tmp_path / "grades.csv").read_text().splitlines()
-        head, *rows = [row.split(",") for row in rows]
-        found = {row[head.index("student_id")]: float(row[head.index("score")]) for row in rows}
-    assert found == {"good": 2, "wrong": 0, "empty": 0}
+        run("nbgrader", "export", "--to", tmp_path / "grades.csv")
+        grades = pd.read_csv(tmp_path / "grades.csv")
+        found = grades.set_index(["assignment", "student_id"])["score"].to_dict()
+    assert found == wanted
+
+
+def handed_in(folder: Path, given: Any, name: str, solved: Any) -> dict[str, Path]:
+    """Fill in what a student is given: right, wrong and not at all."""
+    answers = [cell.source for cell in solved.cells if "BEGIN SOLUTION\n" in cell.source]
+    blank = [i for i, c in enumerate(given.cells) if re.match("import numpy", c.source)]
+    places = {}
+    for who, change in {"good": str, "wrong": spoiled, "empty": None}.items():
+        notebook = nbformat.from_dict(json.loads(json.dumps(given)))
+        for i, answer in zip(blank, answers, strict=True):
+            notebook.cells[i].source = change(answer) if change else notebook.cells[i].source
+        places[who] = folder / "submitted" / who / name / f"{name}.ipynb"
+        places[who].parent.mkdir(parents=True)
+        nbformat.write(notebook, places[who])
+    return places
+
+
+def spoiled(answer: str) -> str:
+    """A wrong answer of a form that may be right: another number."""
+    tree = ast.parse(answer)
+    given = [node for node in ast.walk(tree) if isinstance(node, ast.Return)]
+    for node in given or [node for node in tree.body if isinstance(node, ast.Assign)]:
+        node.value = ast.Constant(3.5)
+    return ast.unparse(tree)

@@ -251,7 +251,7 @@ def test_a_file_name_that_is_no_text(tmp_path: Path, capsys: pytest.CaptureFixtu
     [
         ("=1+1", "'=1+1"), ("+cmd|' /C calc'!A0", "'+cmd|' /C calc'!A0"), ("@SUM(A1)", "'@SUM(A1)"),
         ("-1+1", "'-1+1"), (" =1", "' =1"), ("a;=1", "a;'=1"), ("＝1", "'＝1"), ("-inf", "'-inf"),
-        ("a\t=1", "a\t'=1"), ("a, -b", "a,' -b"), ("a = b", "a = b"), ("a; b", "a; b"),
+        ("a\t=1", "a\t'=1"), ("a, -b", "a, -b"), ("a = b", "a = b"), ("a; b", "a; b"),
         ("more, then less", "more, then less"), ("-0.5", "-0.5"), ("+1e-3", "+1e-3"),
         (-0.5, -0.5), (True, True), (None, None),
     ],

@@ -1,6 +1,7 @@
 """The reference: a page for each room with public names, made of what the rooms offer."""
 
 import inspect
+from collections.abc import Collection
 from importlib import import_module
 
 ROOMS = [  # after the package itself, whose names are not told again
@@ -36,16 +37,19 @@ def reference() -> dict[str, str]:
     pages = {"ikteach": of_room("ikteach", package.__all__)}
     for room in ROOMS:
         names = FORMATS if room == "formats" else import_module(f"ikteach.{room}").__all__
-        pages[room] = of_room(f"ikteach.{room}", [name for name in names if name not in told])
+        pages[room] = of_room(f"ikteach.{room}", names, told)
     return pages
 
 
-def of_room(module: str, names: list[str]) -> str:
-    """Write the page of one module: a table, then each name."""
+def of_room(module: str, names: list[str], told: Collection[str] = ()) -> str:
+    """Write the page of one module: a table, then each name.
+
+    told  names that have their places on the page of the package, to which the table leads
+    """
     lines = [module, "=" * len(module), "", f".. automodule:: {module}", ""]
     lines += [f".. currentmodule:: {module}", "", ".. autosummary::", "   :nosignatures:", ""]
-    lines += [f"   {name}" for name in names]
-    for name in names:
+    lines += [f"   ~ikteach.{name}" if name in told else f"   {name}" for name in names]
+    for name in (name for name in names if name not in told):
         lines += ["", *of_name(module, name)]
     return "\n".join([*lines, ""])
 

@@ -1,7 +1,9 @@
 """The process in which an answer that somebody has handed in runs; never in ours.
 
 This module is what that process runs. It reads requests from its standard input and writes plain
-data (`carried`). Each answer runs in a fork of its own where there are forks, with these bounds:
+data (`carried`). Each answer runs in a fork of its own where there are forks, and speaks with the
+judge only through the process that has forked it, which passes on one reply to each request. So an
+answer leaves nothing behind for the next one. It is bounded:
 
     memory, processor time, size of files, open files, processes   resource limits (not on Windows)
     environment and working directory                              empty, and a folder of its own
@@ -13,12 +15,15 @@ The hook stops what Python asks for; who finds a hole in the interpreter is stop
 
 import builtins
 import contextlib
+import ctypes
 import os
 import pickle
+import signal
 import struct
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
+from itertools import count
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -29,19 +34,26 @@ from ikteach.publish.grading.carried import packed
 MORE_MEMORY = 2**30  # bytes beyond those that the imports have taken
 PROCESSOR = 120  # [s] of an answer
 WRITTEN = 2**20  # bytes of a file
+MOST_WRITTEN = 50  # files and folders
 LARGEST_REQUEST = 2**30  # bytes of a request
+LARGEST_REPLY = 2**23  # bytes
 SIZE = struct.Struct(">Q")
+DONE, ENDED, GONE = b"", b"ended", b"gone"  # the judge is; the answer has; before it replied
+PACKAGE = Path(__file__).parents[2]
+# What an answer may read: Python, the packages, and what these need.
+READABLE = [sys.prefix, sys.base_prefix, str(PACKAGE), str(Path(np.__file__).parents[1])]
+DEVICES = ("/dev/null/", "/dev/urandom/", "/usr/share/zoneinfo/")
 SECRET = ("ikteach.course.solutions", "ikteach.course.exercises")
-HIDDEN = [Path(__file__).parents[2] / "course" / name for name in ("solutions", "exercises")]
+# Nothing that has this in its path; the last three would hide it.
+HIDDEN = ("/course/solutions/", "/course/exercises/", "/../", "/./", "//")
 WRITING = os.O_WRONLY | os.O_RDWR | os.O_APPEND | os.O_CREAT | os.O_TRUNC
-# What no answer needs, by the beginning of the event's name.
-REFUSED = (
-    "subprocess.", "os.system", "os.exec", "os.fork", "os.posix_spawn", "os.spawn", "os.startfile",
-    "os.kill", "os.killpg", "os.remove", "os.rename", "os.rmdir", "os.mkdir", "os.link",
-    "os.symlink", "os.truncate", "os.chmod", "os.chown", "os.chflags", "os.utime", "os.setxattr",
-    "os.putenv", "shutil.", "socket.", "ctypes.", "signal.pthread_kill", "mmap.", "urllib.",
-    "ftplib.", "smtplib.", "webbrowser.", "pty.", "winreg.", "msvcrt.", "tempfile.", "sqlite3.",
-    "sys.addaudithook", "resource.", "syslog.", "fcntl.",
+FILES = ("open", "os.listdir", "os.scandir", "os.mkdir")
+# What else an answer may do, by the beginning of the event's name: a list of what it may not do
+# would have holes.
+ALLOWED = (
+    "array.", "builtins.", "code.", "compile", "exec", "function.", "glob.", "import", "marshal.",
+    "object.", "os.chdir", "os.walk", "pathlib.", "pickle.find_class", "sys._getframe",
+    "sys.excepthook", "sys.unraisablehook", "time.", "_thread.",
 )  # fmt: skip
 
 
@@ -75,21 +87,57 @@ def main() -> None:
     """Serve answers, each in a fork, until there are no more."""
     requests, replies = _streams()
     send(replies, b"ready")
-    while True:
-        try:
+    with contextlib.suppress(EOFError):
+        while True:
             source = receive(requests, LARGEST_REQUEST).decode()
-        except EOFError:
-            return
-        if not hasattr(os, "fork"):
-            _serve(source, requests, replies)
-            return
-        if child := os.fork():
-            os.waitpid(child, 0)
-            send(replies, b"ended")
-        else:
-            with contextlib.suppress(BaseException):
-                _serve(source, requests, replies)
-            os._exit(0)
+            if not hasattr(os, "fork"):  # Windows: the judge starts another process for the next
+                return _serve(source, requests, replies)
+            _serve_in_a_fork(source, requests, replies)
+            send(replies, ENDED)
+
+
+def _serve_in_a_fork(source: str, requests: BinaryIO, replies: BinaryIO) -> None:
+    """Pass on requests and replies by turns until the judge is done."""
+    theirs, ours = _pipe(), _pipe()
+    if not (child := os.fork()):
+        for stream in (requests, replies, theirs[1], ours[0]):
+            stream.close()
+        _end_with_parent()
+        with contextlib.suppress(BaseException):
+            _serve(source, theirs[0], ours[1])
+        os._exit(0)
+    theirs[0].close()
+    ours[1].close()
+    try:
+        send(replies, _reply(ours[0]))
+        while (request := receive(requests, LARGEST_REQUEST)) != DONE:
+            with contextlib.suppress(OSError):  # it has ended: so will the reply
+                send(theirs[1], request)
+            send(replies, _reply(ours[0]))
+    finally:
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+        theirs[1].close()
+        ours[0].close()
+
+
+def _pipe() -> tuple[Any, Any]:
+    """Make a pipe, unbuffered: what reads and what writes."""
+    reads, writes = os.pipe()
+    return os.fdopen(reads, "rb", buffering=0), os.fdopen(writes, "wb", buffering=0)
+
+
+def _reply(stream: BinaryIO) -> bytes:
+    try:
+        return receive(stream, LARGEST_REPLY)
+    except (OSError, EOFError, ValueError):
+        return GONE
+
+
+def _end_with_parent() -> None:
+    """Have Linux kill this process with its parent, also where it has left the session."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
 
 
 def _streams() -> tuple[Any, Any]:
@@ -119,8 +167,8 @@ def _serve(source: str, requests: BinaryIO, replies: BinaryIO) -> None:
         return names["answer"]
 
     send(replies, _tried(bind, functions))
-    while (request := pickle.loads(receive(requests, LARGEST_REQUEST))) is not None:
-        at, arguments = request
+    while (request := receive(requests, LARGEST_REQUEST)) != DONE:
+        at, arguments = pickle.loads(request)
         given = pickle.loads(pickle.dumps(arguments))
         reply = _tried(partial(functions[at], *given), functions)
         changed = [
@@ -175,28 +223,51 @@ def _limit() -> None:
 
 
 def guard(home: str) -> Callable[[str, tuple[Any, ...]], None]:
-    """Make the hook that refuses all files outside of `home`.
+    """Make the hook that refuses whatever an answer does not need.
 
-    Everything that it uses is bound here, where an answer cannot put another in its place.
+    Everything that it uses is bound here, where an answer cannot put another in its place; and of
+    a path it looks at the letters alone, as the functions of `os.path` can be changed.
     """
-    hidden = tuple(os.path.realpath(folder) for folder in HIDDEN)
-    real, text, error, start = os.path.realpath, os.fsdecode, PermissionError, str.startswith
-    writing, refused, secret = WRITING, REFUSED, SECRET
-    is_a, kinds = isinstance, (str, bytes)
+    own = _letters([home])
+    read = own + _letters(READABLE) + DEVICES
+    listed = read + _letters(sys.path)
+    written = own + DEVICES[:1]
+    files, hidden, allowed, secret = FILES, HIDDEN, ALLOWED, SECRET
+    writing, writes, most, after = WRITING, count(1), MOST_WRITTEN, next
+    error, kind, word, encoded, number = PermissionError, type, str, bytes, int
+    start, lower, turned, text = str.startswith, str.lower, str.replace, bytes.decode
 
     def look(event: str, arguments: tuple[Any, ...]) -> None:
-        if start(event, refused):
-            raise error(f"an answer may not do this ({event})")
-        if event == "import" and start(arguments[0], secret):
+        if event in files:
+            place = arguments[0]
+            if kind(place) is number:  # it is open already
+                return
+            if kind(place) is encoded:
+                place = text(place, "utf-8", "surrogateescape")
+            place = turned(lower(place), "\\", "/") + "/" if kind(place) is word else ""
+            write = event == "os.mkdir" or (event == "open" and arguments[2] & writing)
+            if write and after(writes) > most:
+                raise error("an answer may not write so many files")
+            if not start(place, written if write else read if event == "open" else listed):
+                raise error(f"an answer may not {'write' if write else 'read'} files")
+            for part in hidden:
+                if part in place:
+                    raise error("an answer may not read the solutions")
+        elif event == "import" and start(arguments[0], secret):
             raise error("an answer may not read the solutions")
-        if event == "open" and is_a(arguments[0], kinds):
-            place, way = real(text(arguments[0])), arguments[2]
-            if start(place, hidden):
-                raise error("an answer may not read the solutions")
-            if way & writing and not start(place, home):
-                raise error("an answer may not write files")
+        elif event == "object.__getattr__" and kind(arguments[1]) is word:
+            if arguments[1] == "tb_frame":  # it may be one of this function, with its names
+                raise error("an answer may not look at frames of errors")
+        elif not start(event, allowed):
+            raise error(f"an answer may not do this ({event})")
 
     return look
+
+
+def _letters(folders: Iterable[str]) -> tuple[str, ...]:
+    """Write folders as `look` compares them: as they are called, and as they are."""
+    ways = {way(one) for one in folders for way in (os.path.abspath, os.path.realpath)}
+    return tuple(f"{one.lower().replace(os.sep, '/').rstrip('/')}/" for one in ways)
 
 
 if __name__ == "__main__":

@@ -29,12 +29,18 @@ TABLES: dict[str, Table] = {
 }
 
 
-def grade(folder: Path, scheme: Scheme) -> tuple[list[Graded], dict[str, str], str]:
+def grade(
+    folder: Path, scheme: Scheme, roster: pd.DataFrame | None = None
+) -> tuple[list[Graded], dict[str, str], str]:
     """Judge a folder; give marks, what was left out, walls."""
     found, skipped = hand_ins(folder)
+    if roster is not None:
+        gradebook.rows_of(found, roster)  # what is wrong with it is said before, not after
     known: dict[tuple[str, str], Verdict] = {}  # many answers are alike
     graded = []
-    for one in found:
+    for count, one in enumerate(found):
+        if sys.stderr.isatty():
+            print(f"judging {count + 1} of {len(found)}", end="\r", file=sys.stderr)
         with Judging(hidden=folder) as judging:
             graded.append(Graded(one, _verdicts(one, scheme, judging, known)))
             walls = judging.walls
@@ -84,7 +90,7 @@ def main(argv: list[str]) -> int:
     scheme = read_scheme(options.points)
     roster = gradebook.read_roster(options.roster) if options.roster else None
     try:
-        graded, skipped, walls = grade(options.folder.expanduser(), scheme)
+        graded, skipped, walls = grade(options.folder.expanduser(), scheme, roster)
     except NotADirectoryError as error:
         raise RefusedError(f"{error}.") from None
     for name, why in skipped.items():

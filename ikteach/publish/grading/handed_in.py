@@ -7,9 +7,13 @@ What a file says of itself (`passed: true`) is a claim and no mark.
 
 import ast
 import re
-from collections.abc import Iterator
+import symtable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
+from unicodedata import normalize
+
+from IPython.core.inputtransformer2 import TransformerManager
 
 from ikteach.course.record import LARGEST_ANSWERS, valid
 from ikteach.files import bounded, read_json, whole_characters
@@ -17,12 +21,12 @@ from ikteach.publish.collect import files_of
 from ikteach.publish.delivery import LARGEST_NOTEBOOK
 
 KEY = re.compile(r"""\bcheck\(\s*["'](\d\d\.\w+)["']""")
-MAGIC = re.compile(r"^\s*[%!].*$", re.MULTILINE)
 LONGEST = 100_000  # letters of an answer
 MOST_CELLS = 1000
-# How learning platforms name what they hand out: Moodle's folders and Canvas's files.
-MOODLE_FOLDER = re.compile(r"(?P<name>.+?)_(?P<id>\d+)_assignsubmission_\w+_?")
-CANVAS_FILE = re.compile(r"(?P<name>[^_]+)(_LATE)?_(?P<id>\d+)_\d+_.+")
+LEFT_BY_MACOS = "__MACOSX"  # a folder that it puts into archives
+# How learning platforms name the folders and files that they hand out.
+MOODLE = re.compile(r"(?P<name>.+?)(_(?P<id>\d+))?_assignsubmission_.*")
+CANVAS = re.compile(r"(?P<name>[^_]+)(_LATE)?_(?P<id>\d+)_\d+_.+")
 
 
 class HandIn(NamedTuple):
@@ -42,15 +46,25 @@ class HandIn(NamedTuple):
 def hand_ins(folder: Path) -> tuple[list[HandIn], dict[str, str]]:
     """Read what is in a folder, and why not."""
     if not folder.is_dir():
-        raise NotADirectoryError(f"{folder} is not a folder")
+        packed = ": unpack it first" if folder.suffix.lower() == ".zip" else ""
+        raise NotADirectoryError(f"{folder} is not a folder{packed}")
+    files = [
+        (path, path.relative_to(folder), hindrance)
+        for path, hindrance in files_of(folder, (".json", ".zip", ".ipynb"))
+        if LEFT_BY_MACOS not in path.parts
+    ]
+    canvas = _of_canvas(name for _, name, _ in files)
     found: dict[str, HandIn] = {}
     skipped: dict[str, str] = {}
-    for path in sorted(folder.iterdir()):
-        if path.is_dir() and not path.is_symlink() and not path.name.startswith("."):
-            _of(found, path.name)  # also who has handed in nothing
-    for path, hindrance in files_of(folder, (".json", ".zip", ".ipynb")):
-        name = path.relative_to(folder)
-        one = _of(found, name.parts[0] if len(name.parts) > 1 else name.stem)
+    for place in _folders(folder):  # also who has handed in nothing
+        if place.relative_to(folder) not in canvas:
+            inner = [one.name for one in _folders(place) if MOODLE.fullmatch(one.name)]
+            for student in inner or [place.name]:
+                _of(found, student)
+    for path, name, hindrance in files:
+        parts = (*name.parts[:-1], name.stem)
+        moodle = (part for part in parts if MOODLE.fullmatch(part))
+        one = _of(found, name.stem if name.parent in canvas else next(moodle, parts[0]))
         try:
             if hindrance:
                 raise ValueError(hindrance)
@@ -64,11 +78,30 @@ def hand_ins(folder: Path) -> tuple[list[HandIn], dict[str, str]]:
     return sorted(found.values()), skipped
 
 
+def _folders(place: Path) -> list[Path]:
+    """List folders in a folder; what cannot be read is told by `files_of`."""
+    try:
+        inner = sorted(place.iterdir())
+    except OSError:
+        return []
+    ours = (one for one in inner if one.is_dir() and not one.is_symlink())
+    return [one for one in ours if not one.name.startswith(".") and one.name != LEFT_BY_MACOS]
+
+
+def _of_canvas(names: Iterable[Path]) -> set[Path]:
+    """Find the folders inside that hold nothing but files as Canvas names them."""
+    numbers: dict[Path, set[str]] = {}
+    for name in names:
+        match = CANVAS.fullmatch(name.stem)
+        numbers.setdefault(name.parent, set()).add(match["id"] if match else "")
+    return {place for place, found in numbers.items() if "" not in found and len(found) > 1}
+
+
 def _of(found: dict[str, HandIn], place: str) -> HandIn:
     """Find the student to whom a folder or a file belongs."""
-    match = MOODLE_FOLDER.fullmatch(place) or CANVAS_FILE.fullmatch(place)
-    name, number = (match["name"], match["id"]) if match else (place, "")
-    name = whole_characters(name)
+    match = MOODLE.fullmatch(place) or CANVAS.fullmatch(place)
+    name, number = (match["name"], match["id"] or "") if match else (place, "")
+    name = normalize("NFC", whole_characters(name))  # macOS writes é as two characters
     return found.setdefault(f"{name} {number}", HandIn(name, number, {}, set()))
 
 
@@ -104,55 +137,105 @@ def answers(cells: list[str]) -> dict[str, str]:
     A later check of a key replaces an earlier one.
     """
     found: dict[str, str] = {}
-    before: list[ast.stmt] = []
+    before: list[tuple[ast.stmt, Names]] = []
     for text in cells:
-        text = MAGIC.sub("", text)[:LONGEST]
         try:
-            statements = ast.parse(text).body
+            statements = ast.parse(plain_python(text[:LONGEST])).body
         except (SyntaxError, ValueError, MemoryError, RecursionError):
             found |= dict.fromkeys(KEY.findall(text), text)  # to say what is wrong with it
             continue
         for statement in statements:
             for key, answer in _checks(statement):
-                kept = _needed(before, answer)
-                found[key] = "\n".join([*map(ast.unparse, kept), f"answer = {ast.unparse(answer)}"])
-            before.append(statement)
+                lines = map(ast.unparse, _needed(before, answer))
+                found[key] = "\n".join([*lines, f"answer = {ast.unparse(answer)}"])
+            before.append((statement, Names.of(statement)))
     return found
+
+
+def plain_python(text: str) -> str:
+    """Drop the magic of a cell; a line that begins with % may also be Python."""
+    try:
+        ast.parse(text)
+    except SyntaxError:
+        body = re.sub(r"\A\s*%%.*", "", text)  # of `%%time` and the like
+        transformer: Any = TransformerManager
+        return str(transformer().transform_cell(body))
+    return text
 
 
 def _checks(statement: ast.stmt) -> Iterator[tuple[str, ast.expr]]:
     """List (key, answer) of each check in a statement."""
     for node in ast.walk(statement):
-        match node:
-            case ast.Call(
-                func=ast.Name(id="check") | ast.Attribute(attr="check"),
-                args=[ast.Constant(value=str(key)), answer, *_],
-            ):
-                yield key, answer
+        if isinstance(node, ast.Call) and _called(node.func) == "check":
+            given = dict(zip(("key", "answer"), node.args, strict=False))
+            match given | {one.arg: one.value for one in node.keywords}:
+                case {"key": ast.Constant(value=str(key)), "answer": answer}:
+                    yield key, answer
 
 
-def _needed(before: list[ast.stmt], answer: ast.expr) -> list[ast.stmt]:
-    """List the statements that bind what an answer uses, in order."""
-    wanted, kept = _names(answer, ast.Load), set[int]()
-    while more := {i for i, one in enumerate(before) if _bound(one) & wanted} - kept:
+def _called(function: ast.expr) -> str:
+    return getattr(function, "id", "") or getattr(function, "attr", "")
+
+
+def _needed(before: list[tuple[ast.stmt, "Names"]], answer: ast.expr) -> list[ast.stmt]:
+    """List the statements that bind or change what an answer uses, in order."""
+    statements, names = [one for one, _ in before], [names for _, names in before]
+    wanted = set(Names.of(ast.Expr(answer)).used)
+    kept = {i for i, one in enumerate(names) if "*" in one.bound}  # from … import *
+    while more := {i for i, one in enumerate(names) if one.bound & wanted} - kept:
         kept |= more
-        for i in more:
-            wanted |= _names(before[i], ast.Load)
-    return [before[i] for i in sorted(kept)]
+        wanted |= {name for i in more for name in names[i].used}
+    wanted -= {name for one in names for name in one.imported}
+    changes = {i for i, one in enumerate(statements) if _changed(one) & wanted}
+    return [
+        _attempt(statements[i]) if i in changes else statements[i] for i in sorted(kept | changes)
+    ]
 
 
-def _bound(statement: ast.stmt) -> set[str]:
-    """List the names that a statement binds, or changes a part of."""
-    if isinstance(statement, ast.Expr):
-        return set()
-    if isinstance(statement, ast.Import | ast.ImportFrom):
-        return {(one.asname or one.name).partition(".")[0] for one in statement.names}
-    if isinstance(statement, ast.FunctionDef | ast.ClassDef):
-        return {statement.name}
-    parts = [n for n in ast.walk(statement) if isinstance(n, ast.Subscript | ast.Attribute)]
-    changed = [n.value for n in parts if isinstance(n.ctx, ast.Store)]
-    return _names(statement, ast.Store) | {n.id for n in changed if isinstance(n, ast.Name)}
+class Names(NamedTuple):
+    """The names of the notebook that a statement binds, imports and uses, at once or later."""
+
+    bound: set[str]
+    imported: set[str]
+    used: set[str]
+
+    @classmethod
+    def of(cls, statement: ast.stmt) -> "Names":
+        """Look them up as Python does; those of its functions are their own."""
+        try:
+            top = symtable.symtable(ast.unparse(statement), "<answer>", "exec")
+        except (SyntaxError, ValueError):  # such as `return` outside of a function
+            return cls(set(), set(), set())
+        here = top.get_symbols()
+        inner = [one for table in _below(top) for one in table.get_symbols() if one.is_global()]
+        parts = [n for n in ast.walk(statement) if isinstance(n, ast.Subscript | ast.Attribute)]
+        changed = [n.value for n in parts if isinstance(n.ctx, ast.Store)]
+        bound = {one.get_name() for one in here if one.is_assigned() or one.is_imported()}
+        bound |= {one.get_name() for one in inner if one.is_assigned()}
+        bound |= {n.id for n in changed if isinstance(n, ast.Name)}
+        if isinstance(statement, ast.ImportFrom) and statement.names[0].name == "*":
+            bound.add("*")
+        used = {one.get_name() for one in [*here, *inner] if one.is_referenced()}
+        return cls(bound, {one.get_name() for one in here if one.is_imported()}, used)
 
 
-def _names(node: ast.AST, context: type) -> set[str]:
-    return {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, context)}
+def _below(table: symtable.SymbolTable) -> Iterator[symtable.SymbolTable]:
+    for child in table.get_children():
+        yield child
+        yield from _below(child)
+
+
+def _changed(statement: ast.stmt) -> set[str]:
+    """Name what a statement such as `mix.update(…)` may change."""
+    match statement:
+        case ast.Expr(value=ast.Call(func=ast.Attribute(value=ast.Name(id=name)))):
+            return {name}
+    return set()
+
+
+def _attempt(statement: ast.stmt) -> ast.stmt:
+    """Let the answer go on where what may be without meaning for it fails."""
+    (tried,) = ast.parse("try:\n    ...\nexcept Exception:\n    ...").body
+    assert isinstance(tried, ast.Try)
+    tried.body = [statement]
+    return tried

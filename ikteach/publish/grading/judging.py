@@ -23,14 +23,23 @@ from ikteach.course.checking import Exercise, Verdict, find, judge
 from ikteach.course.deadline import TooLongError
 from ikteach.course.forms import WrongError
 from ikteach.files import bounded
-from ikteach.publish.delivery import PACKAGE
-from ikteach.publish.grading.apart import HIDDEN, receive, send
+from ikteach.publish.grading.apart import (
+    DONE,
+    ENDED,
+    LARGEST_REPLY,
+    PACKAGE,
+    READABLE,
+    receive,
+    send,
+)
 from ikteach.publish.grading.carried import unpacked
 from ikteach.publish.parser import RefusedError
 
 STARTING = 60.0  # [s] until Python runs and has its imports
 PATIENCE = 3.0  # times the seconds of the exercise: a machine that judges a class is a busy one
-LARGEST_REPLY = 64 * 2**20  # bytes
+SECRET = [PACKAGE / "course" / name for name in ("solutions", "exercises")]
+# Where people keep what is theirs; of what lies there an answer sees Python and the packages.
+PRIVATE = ["/home", "/media", "/mnt", "/root", "/run", "/srv", "/tmp", "/var", str(Path.home())]
 MODULE = "ikteach.publish.grading.apart"
 
 checking.OURS.add(__file__)  # no line of a student's
@@ -44,10 +53,10 @@ class Judging:
     """
 
     def __init__(self, hidden: Path | None = None) -> None:
-        self._hidden = [*HIDDEN, *([hidden] if hidden else [])]
+        self._hidden = [*SECRET, *([hidden] if hidden else [])]
         self._bubble = bubblewrap()
         self._process: Any = None
-        self._late = False
+        self._late = self._asked = False
         self._folder = tempfile.mkdtemp(prefix="ikteach-answer-")
 
     @property
@@ -55,8 +64,9 @@ class Judging:
         """Say what keeps answers off this machine."""
         limits = "a process per answer, limits, an audit hook"
         if self._bubble:
-            return f"{limits}; bubblewrap: files read-only, no network"
-        return f"{limits}; no bubblewrap here, so grade strangers' answers in a container"
+            return f"{limits}; bubblewrap: files read-only and those of people hidden, no network"
+        root = " and not as root, who has no limit of processes" if is_root() else ""
+        return f"{limits}; no bubblewrap here, so grade strangers' answers in a container{root}"
 
     def __enter__(self) -> "Judging":
         return self
@@ -93,8 +103,9 @@ class Judging:
                 answer, trouble = None, f"Its cell cannot be run: {_told(error)}."
             yield answer, trouble
             with suppress(OSError, EOFError, ValueError, AttributeError):
-                self._ask(pickle.dumps(None))
-                whole = receive(self._process.stdout, 10) == b"ended"
+                if not self._asked:  # else a part of a reply may be on its way
+                    self._ask(DONE)
+                    whole = receive(self._process.stdout, len(ENDED)) == ENDED
         finally:
             watch.cancel()
             if not whole:
@@ -106,6 +117,7 @@ class Judging:
         return self._reply(name)
 
     def _ask(self, data: bytes) -> None:
+        self._asked = True
         with suppress(OSError, AttributeError):  # it has ended: so will the reply
             send(self._process.stdin, data)
 
@@ -113,6 +125,7 @@ class Judging:
         """Read the outcome of a call: a value, or what was raised."""
         try:
             data = receive(self._process.stdout, LARGEST_REPLY)
+            self._asked = False
             word, _, rest = data.partition(b" ")
             if word in (b"is", b"raised"):
                 value = unpacked(rest, lambda name, at: Remote(self, name, at))
@@ -128,7 +141,6 @@ class Judging:
             raise WrongError(f"`{name}` changed its argument {number}: work on a copy of it.")
         if word == b"raised":
             raise _error(value)
-        self._stop()
         raise WrongError(
             f"`{name}` ended its process: by its own wish, or it took too much memory or too long."
         )
@@ -169,7 +181,15 @@ class Judging:
             return []
         walls = [self._bubble, "--ro-bind", "/", "/", "--dev", "/dev", "--proc", "/proc"]
         walls += ["--unshare-all", "--die-with-parent"]
-        needed = [Path(sys.executable), Path(sys.base_prefix), Path(sys.prefix), PACKAGE]
+        needed = sorted(
+            {way(Path(one)) for one in READABLE for way in (Path.absolute, Path.resolve)}
+        )
+        private = {Path(one).resolve() for one in PRIVATE if os.path.isdir(one)} - {Path("/")}
+        for folder in sorted(private):
+            walls += ["--tmpfs", str(folder)]
+        for path in needed:
+            if not private.isdisjoint([path, *path.parents]):
+                walls += ["--ro-bind", str(path), str(path)]
         for folder in (one.resolve() for one in self._hidden if one.is_dir()):
             if not any(one.is_relative_to(folder) for one in needed):
                 walls += ["--tmpfs", str(folder)]
@@ -209,6 +229,11 @@ class Remote:
     def __call__(self, *arguments: Any) -> Any:
         """Call it there."""
         return self._judging.call(self.__name__, self._at, arguments)
+
+
+def is_root() -> bool:
+    """Tell whether limits of processes do not count here."""
+    return getattr(os, "geteuid", lambda: 1)() == 0
 
 
 def bubblewrap() -> str:

@@ -4,12 +4,14 @@ title = "Inverse kinematics"   # the column's name
 default = 1                    # points of an exercise that is not named; 0: only those named
 
 [points]
-"00.hand" = 2
+"05" = 2        # each exercise of chapter 5
+"00.hand" = 0.5
 """
 
 import importlib
 import math
 import tomllib
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -31,7 +33,12 @@ class Scheme(NamedTuple):
     @property
     def total(self) -> float:
         """Add all points."""
-        return sum(self.points.values())
+        return added(self.points.values())
+
+
+def added(points: Iterable[float]) -> float:
+    """Add points as people do: three times 0.1 is 0.3."""
+    return round(math.fsum(points), 6)
 
 
 def every_exercise() -> list[str]:
@@ -59,14 +66,17 @@ def read_scheme(path: Path | None) -> Scheme:
     if not isinstance(given, dict):
         raise RefusedError(f"{path}: [points] must be a table, exercise = points.")
     for key in given:
-        if key not in keys:
+        if key not in {*keys, *(one[:2] for one in keys)}:
             raise RefusedError(f"{path}: {unknown('exercise', key, keys)}")
     default = _number(path, "default", content.get("default", 1))
-    points = {key: _number(path, key, given.get(key, default)) for key in keys}
+    worth = {key: _number(path, key, value) for key, value in given.items()}
+    points = {key: worth.get(key, worth.get(key[:2], default)) for key in keys}
+    if not any(points.values()):
+        raise RefusedError(f"{path}: no exercise is worth anything.")
     title = content.get("title", "ikteach")
     if not isinstance(title, str) or not title.strip():
         raise RefusedError(f"{path}: title must be a text, not {quoted(title)}.")
-    return Scheme({key: worth for key, worth in points.items() if worth}, title.strip())
+    return Scheme({key: value for key, value in points.items() if value}, title.strip())
 
 
 def _number(path: Path, name: str, value: Any) -> float:
