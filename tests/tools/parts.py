@@ -24,6 +24,7 @@ COMPUTING = [
     *(f"tests/{room}" for room in ("bench", "body", "motion", "solvers", "study")),
 ]
 BROWSERS = ["tests/browser", "tests/engines"]
+WASM = "tests/wasm"  # in the full mode alone
 KERNELS, RARER_KERNELS = ["Haswell", "Sandybridge"], ["SkylakeX", "Zen"]
 ROUNDED = ["tests/body", "tests/motion", "tests/solvers", "tests/course/test_prose.py"]
 STYLE = "tests/test_types.py"  # with the newest numpy, pandas, mypy and ruff alone
@@ -148,7 +149,7 @@ def path_to_pythons() -> str:
 
 def lanes(folder: Path, full: bool) -> list[list[list[Part]]]:
     """The lanes, those of one list side by side, one list after the other."""
-    apart = [f"--ignore={one}" for one in [*BROWSERS, *COMPUTING, STYLE]]
+    apart = [f"--ignore={one}" for one in [*BROWSERS, *COMPUTING, STYLE, WASM]]
     no_browser = ["tests", *(f"--ignore={one}" for one in [*BROWSERS, STYLE])]
     servers = Part(
         "servers, notebooks, widgets",
@@ -161,6 +162,8 @@ def lanes(folder: Path, full: bool) -> list[list[list[Part]]]:
         [pytest("tests/engines", nice=False)],
         needs=[["sh", "tests/engines/install", sys.executable]],
     )
+    install = [sys.executable, "-m", "uv", "pip", "install", "--quiet", "--python", sys.executable]
+    wasm = Part("WebAssembly", [pytest(WASM)], needs=[[*install, "--editable", ".[wasm]"]])
     beside = [
         Part("computing", [pytest(*COMPUTING, STYLE)]),
         page,
@@ -169,6 +172,7 @@ def lanes(folder: Path, full: bool) -> list[list[list[Part]]]:
     ]
     if full:
         browsers.append(engines)
+        beside.append(wasm)
         beside += [kernel(name, *TALKING) for name in RARER_KERNELS]
         beside += [packages(folder, "highest", no_browser, python) for python in PYTHONS]
     return [[[servers]], [browsers, beside]]
