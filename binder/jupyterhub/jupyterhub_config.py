@@ -23,14 +23,15 @@ import pwd
 import stat
 import sys
 from contextlib import suppress
-from importlib.metadata import entry_points
 from itertools import chain
 from pathlib import Path
 from urllib.parse import urlsplit
 
-from jupyterhub import auth, spawner
-from jupyterhub.authenticators.shared import SharedPasswordAuthenticator
-from traitlets import import_item
+from jupyterhub import spawner
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+from guard import chosen, pages_of_others, people, refuse
 
 c = get_config()
 HERE = Path(__file__).resolve().parent
@@ -86,44 +87,10 @@ CULLER = [sys.executable, "-m", "jupyterhub_idle_culler", "--timeout=3600", "--m
 c.JupyterHub.services = [{"name": "idle-culler", "command": CULLER}]
 
 
-# The settings by which an authenticator names the house whose people it knows.
-HOUSES = [
-    *("hosted_domain", "tenant_id", "allowed_idps", "identity_provider"),  # one of many houses
-    *(
-        "authorize_url",
-        "github_url",
-        "gitlab_url",
-        "okta_domain",
-        "auth0_domain",
-    ),  # its own sign-on
-    *("issuer", "consumers"),  # a learning platform
-    "server_address",  # a directory
-]
-
-
-def refuse(sentence):
-    """End here, with what the owner has to set."""
-    sys.exit(f"The hub does not start: {sentence}")
-
-
 OWNERS = Path(os.environ.get("IKTEACH_CLASS", "class.py")).resolve()
 if not OWNERS.is_file():
     refuse(f"there is no {OWNERS}. Name the file of your settings in IKTEACH_CLASS.")
 load_subconfig(str(OWNERS))
-
-
-def chosen(kind, value):
-    """Find the class of an authenticator or a spawner, and its settings."""
-    known = {entry.name: entry for entry in entry_points(group=f"jupyterhub.{kind}s")}
-    if isinstance(value, str):
-        with suppress(ImportError, ValueError):  # then it stays a word
-            value = known[value].load() if value in known else import_item(value)
-    if not isinstance(value, type):
-        refuse(f"there is no {kind} {value!r}; installed are {', '.join(sorted(known))}.")
-    settings = {}
-    for base in reversed(value.mro()):
-        settings.update(c.get(base.__name__, {}))
-    return value, settings
 
 
 def changeable(path, folders, admins):
@@ -138,29 +105,12 @@ def changeable(path, folders, admins):
     return bool((by_group or found.st_mode & stat.S_IWOTH) and not sticky)
 
 
+admins = people(c)
 hub = c.JupyterHub
-if not hub.get("authenticator_class"):
-    refuse("set c.JupyterHub.authenticator_class: how is a student to prove who they are?")
-authenticator, who = chosen("authenticator", hub.authenticator_class)
-name = authenticator.__name__
-if issubclass(authenticator, (auth.DummyAuthenticator, SharedPasswordAuthenticator)):
-    refuse(f"with {name} anybody can come in as anybody.")
-if not any(value for key, value in who.items() if key.startswith("allow")):
-    refuse(f"nobody may come in. Set allowed_users, or another allow… of {name}.")
-# All may come in where all are of one house: whoever has a password of this machine, or is of the
-# house that the settings name. Any other authenticator may make a user of whoever comes.
-house = issubclass(authenticator, auth.PAMAuthenticator) or any(map(who.get, HOUSES))
-if who.get("open_signup") or (who.get("allow_all") and not house):
-    refuse(f"anybody in the world could come in. Have {name} allow your students alone.")
-if not who.get("admin_users") and not who.get("admin_groups"):
-    refuse("set c.Authenticator.admin_users: who looks after the class?")
-
-runs, how = chosen("spawner", hub.spawner_class)
+runs, _ = chosen(c, "spawner", hub.spawner_class)
 if issubclass(runs, spawner.SimpleLocalProcessSpawner):
     refuse("with SimpleLocalProcessSpawner all students share the account of the hub.")
-for setting in ("allow_origin", "disable_check_xsrf", "Access-Control-Allow-Origin"):
-    if setting in repr([how, hub, c.get("ServerApp")]):
-        refuse(f"{setting} opens the students' servers to other people's pages. Take it out.")
+pages_of_others(c)
 
 # What the hub runs, as root, must be out of the students' reach.
 CLONE = HERE.parents[1]
@@ -168,7 +118,7 @@ folders = [OWNERS.parent, Path.cwd(), Path(sys.prefix).resolve(), CLONE]
 above = (path for folder in folders for path in (folder, *folder.parents))
 trees = [CLONE / name for name in ("binder", "ikteach", "notebooks")]
 for path in chain([OWNERS, *trees], above, *(tree.rglob("*") for tree in trees)):
-    if path.exists() and changeable(path, folders, who.get("admin_users")):
+    if path.exists() and changeable(path, folders, admins):
         refuse(f"others may change {path}: chown it to root, and chmod go-w.")
 
 inside = urlsplit(hub.get("bind_url", "")).hostname in ("127.0.0.1", "::1", "localhost")

@@ -27,6 +27,7 @@ FRAMES = 240  # of a cycle of the thesis's walk
 LOW_SHARE, ROUNDS = 0.4, 5  # of the frames that tell where the ground is; of the search for them
 FINE = 1 / 60  # time between two frames of a walk that is written down [s]
 NEAR_GROUND = 0.03  # a point that is lower may stand [m]
+AT_REST = 1e-6  # what rounding makes of the speed of a point at rest is below [m/s]
 
 
 def limbs(tree: Tree, names: Sequence[str] | None = None) -> Effectors:
@@ -102,7 +103,7 @@ def levelled(walk: Recorded) -> Recorded:
     targets[:, points, 1] -= (slope * times + start - walk.floor)[:, None]
     low = targets[:, feet, 1] < walk.floor + NEAR_GROUND
     standing = np.zeros(targets.shape[:2], dtype=bool)
-    standing[:, feet] = low & (np.gradient(targets[:, feet, 2], times, axis=0) < 0)
+    standing[:, feet] = low & (np.gradient(targets[:, feet, 2], times, axis=0) < -AT_REST)
     left = [i for i in feet if walk.names[i].endswith(".l")]
     down = np.atleast_1d(standing[:, left].any(axis=1))
     begins = np.flatnonzero(down[1:] & ~down[:-1]) + 1

@@ -24,6 +24,7 @@ COMPUTING = [
     *(f"tests/{room}" for room in ("bench", "body", "motion", "solvers", "study")),
 ]
 BROWSERS = ["tests/browser", "tests/engines"]
+WASM = "tests/wasm"  # in the full mode alone
 KERNELS, RARER_KERNELS = ["Haswell", "Sandybridge"], ["SkylakeX", "Zen"]
 ROUNDED = [  # what solves, and what is said of runs
     *(f"tests/motion/test_{name}.py" for name in ("gait", "rank", "solve", "step", "tracking")),
@@ -154,7 +155,7 @@ def path_to_pythons() -> str:
 
 def lanes(folder: Path, full: bool) -> list[list[list[Part]]]:
     """The lanes, those of one list side by side, one list after the other."""
-    apart = [f"--ignore={one}" for one in [*BROWSERS, *COMPUTING, STYLE]]
+    apart = [f"--ignore={one}" for one in [*BROWSERS, *COMPUTING, STYLE, WASM]]
     no_browser = ["tests", *(f"--ignore={one}" for one in [*BROWSERS, STYLE])]
     servers = Part(
         "servers, notebooks, widgets",
@@ -167,6 +168,8 @@ def lanes(folder: Path, full: bool) -> list[list[list[Part]]]:
         [pytest("tests/engines", nice=False)],
         needs=[["sh", "tests/engines/install", sys.executable]],
     )
+    install = [sys.executable, "-m", "uv", "pip", "install", "--quiet", "--python", sys.executable]
+    wasm = Part("WebAssembly", [pytest(WASM)], needs=[[*install, "--editable", ".[wasm]"]])
     beside = [
         Part("computing", [pytest(*COMPUTING, STYLE)]),
         page,
@@ -175,6 +178,7 @@ def lanes(folder: Path, full: bool) -> list[list[list[Part]]]:
     ]
     if full:
         browsers.append(engines)
+        beside.append(wasm)
         beside += [kernel(name, RARER) for name in RARER_KERNELS]
         beside += [packages(folder, "highest", no_browser, python) for python in PYTHONS]
     return [[[servers]], [browsers, beside]]
