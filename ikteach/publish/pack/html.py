@@ -10,13 +10,14 @@ from nbconvert.filters.markdown_mistune import MarkdownWithMath
 from ikteach.markup import Markup
 from ikteach.publish.pages import MathML
 
+ANCHOR = re.compile(r'<a class="anchor-link".*?</a>')  # of a heading, for pages with links
 PICTURE = re.compile(r'src="(pictures/[\w.-]+)"')
 KINDS = {".svg": "svg+xml", ".png": "png"}
 
 
 def rendered(text: str, pictures: Path | None = None) -> Markup:
     """Render Markdown; `pictures` is the folder whose pictures it shows."""
-    html = MarkdownWithMath(renderer=MathML(escape=False)).render(text)
+    html = ANCHOR.sub("", MarkdownWithMath(renderer=MathML(escape=False)).render(text))
 
     def inside(found: re.Match[str]) -> str:
         assert pictures is not None
