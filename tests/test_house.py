@@ -83,6 +83,17 @@ def test_a_constant_is_defined_once():
     assert {one: modules for one, modules in known.items() if len(modules) > 1} == {}
 
 
+def test_no_merge_is_left_half_done():
+    """In no text of ours, whatever its kind: a mark of git stands at the beginning of a line."""
+    kinds = {".css", ".html", ".ipynb", ".js", ".json", ".md", ".py", ".toml", ".txt", ".yml"}
+    ours = [PACKAGE, PACKAGE.parent / "notebooks", PACKAGE.parent / "tests"]
+    texts = [path for folder in ours for path in folder.rglob("*") if path.suffix in kinds]
+    texts += PACKAGE.parent.glob("*.*")
+    marked = re.compile(r"^ *\"?(?:<{7}|>{7}) ", re.MULTILINE)
+    written = [p for p in texts if p.is_file() and "node_modules" not in p.parts]
+    assert [str(p) for p in written if marked.search(p.read_text("utf-8", "replace"))] == []
+
+
 def test_the_formatter_is_followed():
     counts = {
         str(module): len(

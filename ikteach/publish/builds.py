@@ -33,7 +33,9 @@ def main(argv: list[str]) -> int:
         allow_abbrev=False,
     )
     parser.add_argument(
-        "build", choices=BUILDS, help="notebooks without or with solutions; pages; assignments"
+        "build",
+        choices=BUILDS,
+        help="notebooks without or with solutions; pages; assignments; pack",
     )
     parser.add_argument("folder", metavar="FOLDER", type=Path)
     options = parser.parse_args(argv)
@@ -91,12 +93,20 @@ def otter(notebooks: Path, folder: Path) -> None:
     assignments.for_otter(notebooks, folder)
 
 
+def pack(notebooks: Path, folder: Path) -> None:
+    """Write the instructor's pack, or raise LookupError."""
+    from ikteach.publish.pack.write import write_pack
+
+    write_pack(notebooks, folder)
+
+
 BUILDS = {
     "student": student,
     "instructor": instructor,
     "html": pages,
     "nbgrader": nbgrader,
     "otter": otter,
+    "pack": pack,
 }
 
 

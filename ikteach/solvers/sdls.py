@@ -101,7 +101,7 @@ def three_rows(J: Array) -> None:
 def bounds(
     J: Array, U: Array, sigma: Array, Vt: Array, max_angle: float
 ) -> tuple[Array, Array, Array]:
-    """Return N, M [m] and γ [rad] of each singular direction of J = U diag(σ) Vᵀ, (..., r).
+    """Return N, M and γ [rad] of each singular direction of J = U diag(σ) Vᵀ, (..., r).
 
     γ_i = min(1, N_i / M_i) γ_max; the σ are above 0.
     """
