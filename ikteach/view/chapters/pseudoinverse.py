@@ -48,7 +48,7 @@ class CapPlayer(Cell):
         super().__init__(slot, player.note)
         self.player = player
         player.controls["method"].description = "Cap"
-        panel = Panel(
+        panel = self.panel = Panel(
             "Caps",
             [
                 {"cap": Does(slider("cap [° per step]", degrees, *CAP, 0.5), self._cap)},

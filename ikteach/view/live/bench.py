@@ -29,6 +29,7 @@ class Bench(Cell):
     `show(**values)` makes the picture whenever a control moves.
 
     controls  {name: widget with a value}
+    first     the values with which it begins
     buttons   {label: its action}; then the picture is made anew
     scene     a live scene that `show` moves; the picture is then a chart beside it
     panel     the controls as they are laid out; one under the other, if not given
@@ -53,6 +54,7 @@ class Bench(Cell):
         show, buttons = function("show", show), doors.named("buttons", buttons or {}, function)
         super().__init__(slot, Note() if scene is None else scene.note)
         self.controls, self.scene = controls, scene
+        self.first = self.values
         self._show, self._stale = show, False
         self._waiting: list[Callable[[], None]] = []
         self._picture, self._below = Picture(), Prose()
