@@ -6,6 +6,8 @@ from typing import Any, NamedTuple
 import ipywidgets as widgets
 
 from ikteach.checks import function
+from ikteach.view.live.link import StateLink
+from ikteach.view.live.preset import link_of
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import doors
 from ikteach.view.widgets.cell import Cell
@@ -90,6 +92,10 @@ class Bench(Cell):
         png = self._picture.png if self.scene is None else self.scene.still().png
         return Still(png, self.words)
 
+    def make_link(self) -> StateLink:
+        """Make the widget that links to its state."""
+        return StateLink(lambda: link_of(self), self.guarded, button=self.scene is None)
+
     def _draw(self) -> None:
         waiting, self._waiting, self._stale = self._waiting, [], False
         for act in waiting:
@@ -129,6 +135,7 @@ class Bench(Cell):
                 return [Arranged(seen, [*rows, below], wide=True), self.status]
             return [Arranged([*chart, self.note.widget], [*rows, below], chart=True), self.status]
         scene.driver.on_page = self._seen
+        scene.offer({"l": ("makes a link to this state", self.guarded(self.show_link))})
         scene.widget.add_class("ikteach-told")  # what its words say, `below` shows
         return [Arranged([scene.widget], [*rows, *chart, below]), self.status]
 

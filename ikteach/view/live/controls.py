@@ -7,15 +7,15 @@ from typing import Any
 def controls(figure: Any) -> dict[str, Any]:
     """Return the controls of a figure, and of its parts."""
     found: dict[str, Any] = {}
-    for part in parts(figure):
+    for part in parts_of(figure):
         for name, control in {**getattr(part, "controls", {}), **_buttons(part)}.items():
             found.setdefault(name, control)
     play = getattr(figure, "play_button", None)
     return found if play is None else {**found, "playing": play}
 
 
-def parts(figure: Any) -> list[Any]:
-    """List the figure and those of its parts that have controls."""
+def parts_of(figure: Any) -> list[Any]:
+    """List the figure and its parts with controls."""
     inner = (getattr(figure, name, None) for name in ("panel", "player", "bar"))
     own = [part for part in inner if part is not None]
     deeper = [one.panel for one in own if hasattr(one, "panel")]

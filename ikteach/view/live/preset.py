@@ -26,7 +26,7 @@ import numpy as np
 from ikteach.arrays import Array
 from ikteach.checks import shown
 from ikteach.names import unknown
-from ikteach.view.live.controls import controls, parts, targets
+from ikteach.view.live.controls import controls, parts_of, targets
 from ikteach.view.live.turns import Turns
 from ikteach.view.widgets import doors
 
@@ -51,13 +51,13 @@ def preset(figure: Figure, state: str) -> Figure:
     What cannot be set is told in the figure's status, in a sentence that names it and says what is
     allowed; the rest is set.
     """
-    wanted, refused = read(figure, doors.text("the state of a figure", state))
+    wanted, refused = read_state(figure, doors.text("the state of a figure", state))
     _Setting(figure, wanted, refused).go_on()
     return figure
 
 
-def read(figure: Any, state: str) -> tuple[dict[str, Value], list[str]]:
-    """Read a state: the values of controls and targets, and refusals."""
+def read_state(figure: Any, state: str) -> tuple[dict[str, Value], list[str]]:
+    """Read the values in a state, and the refusals."""
     wanted: dict[str, Value] = {}
     refused: list[str] = []
     if len(state) > LONGEST or state.count("&") >= MOST:
@@ -79,12 +79,12 @@ def read(figure: Any, state: str) -> tuple[dict[str, Value], list[str]]:
 
 
 def state_of(figure: Any) -> dict[str, Value]:
-    """Give what a person has set of a figure: {control or target: value}.
+    """Give what a person has set, {control or target: value}.
 
     What the figure has set in answer, as the speed that a motion brings, is left out.
     """
     of_figure = controls(figure)
-    holders = [part for part in parts(figure) if hasattr(part, "first")]
+    holders = [part for part in parts_of(figure) if hasattr(part, "first")]
     nobody = Turns()
     asked = {turn for one in holders for turn in getattr(one, "turns", nobody).asked.values()}
     found: dict[str, Value] = {}
