@@ -6,8 +6,9 @@ from functools import partial
 from time import monotonic
 from typing import Any
 
+from ikteach.view.live.controls import parts_of
 from ikteach.view.live.link import StateLink
-from ikteach.view.live.panel import play_button, press
+from ikteach.view.live.panel import Panel, play_button, press
 from ikteach.view.live.preset import link_of
 from ikteach.view.live.strips import EVERY, Strips
 from ikteach.view.webgl.scene import Scene
@@ -74,6 +75,12 @@ class Live(Cell):
                 for i, name in enumerate(methods[:9], start=1)
             },
         }
+
+    def begun(self) -> None:
+        """Note the values with which its controls begin."""
+        for part in parts_of(self):
+            if isinstance(part, Panel):
+                part.first = part.values
 
     def make_link(self) -> StateLink:
         """Make the widget that links to its state."""

@@ -118,7 +118,7 @@ class _Setting:
         self.left, self.again = [*wanted], True
 
     def go_on(self) -> None:
-        """Set the next control, and go on after the figure's answer."""
+        """Set the next control; go on when it has acted."""
         while self.left:
             try:
                 if self._set(self.left.pop(0)):
@@ -132,6 +132,7 @@ class _Setting:
             more = len(self.refused) - TOLD
             others = f"; and {more} more" if more > 0 else ""
             said = f"Not set: {'; '.join(self.refused[:TOLD])}{others}. The rest is set."
+            said = said.replace("?;", "? And").replace("?.", "?")
             self.figure.status.fail(said)
 
     def _set(self, name: str) -> bool:

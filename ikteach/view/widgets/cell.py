@@ -95,4 +95,5 @@ class Cell(Living, widgets.VBox):  # type: ignore[misc]
     def _have_link(self) -> None:
         if self.link is None and (link := self.make_link()) is not None:
             self.link = link
-            self.children = [*self.children, link]
+            at = self.children.index(self.status) + 1 if self.status in self.children else 0
+            self.children = [*self.children[:at], link, *self.children[at:]]
