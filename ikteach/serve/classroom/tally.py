@@ -21,7 +21,7 @@ from ikteach.serve.classroom.asked import Asked, Prediction
 from ikteach.serve.classroom.folder import Answers
 
 STUCK_TRIES, STUCK_MINUTES = 3, 10  # wrong tries, or minutes since the first one
-BARS, KINDS = 8, 8  # rows of a chart
+BARS, KINDS, PARTS = 8, 8, 5  # rows of a chart: answers, findings, parts of a range
 MOST_TRIES = 999  # that anybody is believed to have made
 OTHER, ALONE = "another answer", "findings of one student each"
 CODE, NUMBER = re.compile(r"`[^`]*`?"), re.compile(r"[-−+]?\d[\d.]*(?:e[-+−]?\d+)?")
@@ -116,15 +116,14 @@ def _unknown(answers: Iterable[Any]) -> list[tuple[str, int]]:
 
 
 def _binned(answers: list[float], numbers: tuple[float, float, str]) -> list[tuple[str, int]]:
-    """Count numbers in parts of their range that are equally wide."""
+    """Count numbers, each whole one or in parts of their range."""
     low, high, unit = numbers
-    whole = high - low < BARS and low % 1 == high % 1 == 0
-    parts = int(high - low) + 1 if whole and all(x % 1 == 0 for x in answers) else 5
-    single = parts != 5 or whole
-    width = 1.0 if single else (high - low) / parts
+    single = high - low < BARS and all(x % 1 == 0 for x in [low, high, *answers])
+    parts = int(high - low) + 1 if single else PARTS
+    width = 1.0 if single else (high - low) / PARTS
     counts = Counter(min(int((x - low) / width), parts - 1) for x in answers)
-    edges = [low + i * width for i in range(parts + 1)]
-    labels = [f"{a:g}" if single else f"{a:g} to {b:g}" for a, b in pairwise(edges)]
+    edges = pairwise(low + i * width for i in range(parts + 1))
+    labels = [f"{a:g}" if single else f"{a:g} to {b:g}" for a, b in edges]
     return [(f"{label} {unit}".strip(), counts[i]) for i, label in enumerate(labels)]
 
 
