@@ -91,8 +91,9 @@ def state_of(figure: Any) -> dict[str, Value]:
     for holder in holders:
         turns, values = getattr(holder, "turns", nobody), holder.values
         for name, first in holder.first.items():
-            new = values[name] != first and turns.followed.get(name) not in asked
-            if (new or name in turns.asked) and not of_figure[name].disabled:
+            back = name in turns.asked and name in turns.moved  # a person has put it back
+            new = back if values[name] == first else turns.followed.get(name) not in asked
+            if new and not of_figure[name].disabled:
                 found.setdefault(name, values[name])
     if LAST in of_figure and not of_figure[LAST].value:
         found[LAST] = False
@@ -233,5 +234,5 @@ def _written(value: Value) -> str:
     if isinstance(value, list):
         return ",".join(map(_written, value))
     if isinstance(value, float):
-        return f"{value:.{DIGITS}g}"
+        return f"{value or 0.0:.{DIGITS}g}"  # no −0
     return str(value)

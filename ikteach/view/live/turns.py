@@ -14,11 +14,13 @@ class Turns:
 
     asked     {control: the turn in which a person set it}, unless the program has set it since
     followed  {control: the turn in which the program gave it another value}
+    moved     controls to which the program has ever given another value
     """
 
     def __init__(self) -> None:
         self.asked: dict[str, int] = {}
         self.followed: dict[str, int] = {}
+        self.moved: set[str] = set()
 
     def ask(self, name: str) -> None:
         """Note that a person sets a control."""
@@ -31,3 +33,4 @@ class Turns:
         if old != new:
             self.asked.pop(name, None)
             self.followed[name] = _now
+            self.moved.add(name)
