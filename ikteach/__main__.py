@@ -11,6 +11,7 @@ from ikteach.publish.parser import RefusedError, meant
 OPEN = "ikteach.serve.lab"
 COMMANDS = {  # each a module with main(argv), which gives the exit code
     "build": "ikteach.publish.builds",
+    "class": "ikteach.serve.classroom",
     "collect": "ikteach.publish.collect",
     "docs": "ikteach.publish.docs",
     "film": "ikteach.publish.race",

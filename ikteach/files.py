@@ -82,7 +82,11 @@ def read_text(path: Name, most: int) -> str:
     In UTF-8 or, with its mark, in UTF-16. ValueError says "it is …", for a sentence that begins
     with the file's name; OSError where it cannot be read at all.
     """
-    data = read_bytes(path, most)
+    return text_of(read_bytes(path, most))
+
+
+def text_of(data: bytes) -> str:
+    """Decode a text file; ValueError as `read_text`."""
     for sign, what in SIGNS.items():
         if data[:200].lstrip(b"\xef\xbb\xbf \t\r\n").startswith(sign):
             raise ValueError(f"it is {what}")
@@ -123,7 +127,12 @@ def read_json(path: Name, most: int) -> Any:
     NaN and Infinity come as text. All its numbers are finite, its texts can be written again, and
     it is not nested deeper than `DEEPEST`. ValueError says "it is …", OSError as `read_text`.
     """
-    text = read_text(path, most)
+    return json_of(read_bytes(path, most))
+
+
+def json_of(data: bytes) -> Any:
+    """Decode a JSON file; all as `read_json` says."""
+    text = text_of(data)
     try:
         content = json.loads(text, parse_constant=str, parse_float=_number, parse_int=_whole)
     except json.JSONDecodeError as error:

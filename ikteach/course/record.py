@@ -16,6 +16,7 @@ from ikteach import files
 from ikteach.course.notice import Notice
 
 FILE = "predictions.json"
+IN_CLASS = "in class"  # in the file: false of who is not to be counted before the class
 ANSWER_KINDS = ("predictions", "verdicts", "quiz")
 KEPT = "your answers are kept until the kernel stops."
 LARGEST_ANSWERS = 50 * 2**20  # bytes of a file of answers; an exported log may be in it
@@ -62,7 +63,7 @@ def store(kind: str, key: str, *, again: bool = False, **fields: Any) -> str:
     """Add these fields under the key, at once.
 
     Returns a sentence if something is amiss, else ''. `again` counts this as another try, in the
-    field `tries`.
+    field `tries`; the first was made at `since`.
     """
     folder = home()
     with _lock:
@@ -79,6 +80,26 @@ def store(kind: str, key: str, *, again: bool = False, **fields: Any) -> str:
             known, trouble = _add(answers, kind, key, fields, again), f"{error}: {KEPT}"
         _unsaved.setdefault(folder, {}).setdefault(kind, {})[key] = known
         return trouble
+
+
+def show_in_class(on: bool = True) -> Notice:
+    """Choose whether the class's page may count your answers.
+
+    It is kept with the answers: see `python -m ikteach class`. Nothing else changes.
+    """
+    folder = home()
+    with _lock:
+        try:
+            with files.alone(folder / FILE):
+                answers, trouble = _read(folder, set_aside=True)
+                if trouble and os.path.lexists(folder / FILE):
+                    raise OSError(trouble)
+                content = answers | {IN_CLASS: bool(on)}
+                files.write_whole(folder / FILE, _json(content), overwrite=True)
+        except OSError as error:
+            return Notice(f"Not changed: {error}.", "bad")
+    counted = "are counted" if on else "are left out"
+    return Notice(f"On the page before the class your answers {counted}. {trouble}".strip(), "good")
 
 
 def export(path: str | os.PathLike[str], log: Any = None, *, overwrite: bool = False) -> Notice:
@@ -101,6 +122,8 @@ def export(path: str | os.PathLike[str], log: Any = None, *, overwrite: bool = F
         why = files.bounded(str(error))
         return Notice(f"Nothing written: `log` cannot be put into a file ({why}).", "bad")
     content = {**{kind: answers.get(kind, {}) for kind in ANSWER_KINDS}, "log": table}
+    counted: Any = answers.get(IN_CLASS, True)
+    content |= {} if counted else {IN_CLASS: False}
     try:
         files.write_whole(target, _json(content), overwrite=overwrite)
     except FileExistsError:
@@ -136,8 +159,9 @@ def _add(answers: Answers, kind: str, key: str, fields: Entry, again: bool) -> E
     """Put the fields into the answers, and give the entry that they are now in."""
     group = answers.setdefault(kind, {})
     known = group.get(key, {})
-    tries = {"tries": known.get("tries", 0) + 1} if again else {}
     now = datetime.now(UTC).isoformat(timespec="seconds")
+    first = {"since": known.get("since", now)}
+    tries = first | {"tries": known.get("tries", 0) + 1} if again else {}
     new = {name: _brief(name, files.jsonable(value)) for name, value in fields.items()}
     group[key] = known | new | tries | {"at": now}
     return group[key]

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from ikteach.checks import shown
 from ikteach.names import unknown
+from ikteach.view.live.controls import controls, targets
 
 if TYPE_CHECKING:
     from ikteach.course.buttons import Tries
@@ -69,26 +70,3 @@ def put(figure: Any, setting: Setting) -> None:
                 of_figure[name].click()
         else:
             of_figure[name].value = value
-
-
-def controls(figure: Any) -> dict[str, Any]:
-    """Return the controls of a figure, and of its parts."""
-    panels = [*getattr(figure, "panels", {}).values()]
-    inner = [
-        part for part in (getattr(figure, "player", None), getattr(figure, "bar", None)) if part
-    ]
-    found: dict[str, Any] = {}
-    for part in (figure, *panels, *inner):
-        for name, control in {**getattr(part, "controls", {}), **_buttons(part)}.items():
-            found.setdefault(name, control)
-    return found
-
-
-def targets(figure: Any) -> list[str]:
-    """Return the names of the targets that can be moved."""
-    return [*getattr(getattr(figure, "targets", None), "names", ())]
-
-
-def _buttons(part: Any) -> Mapping[str, Any]:
-    found = getattr(part, "buttons", {})
-    return found if isinstance(found, Mapping) else {}

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from ikteach.view.chapters.singularity import BendBench
     from ikteach.view.chapters.svd import SvdBench
     from ikteach.view.chapters.workbench import Workbench
+    from ikteach.view.live.preset import preset
     from ikteach.view.raster.still import StillScene
     from ikteach.view.webgl.scene import Scene
 
@@ -26,6 +27,7 @@ _HOMES = {
     "SvdBench": "chapters.svd",
     "WalksPlayer": "chapters.beyond",
     "Workbench": "chapters.workbench",
+    "preset": "live.preset",
 }
 
 __all__ = [
@@ -39,6 +41,7 @@ __all__ = [
     "SvdBench",
     "WalksPlayer",
     "Workbench",
+    "preset",
 ]
 
 

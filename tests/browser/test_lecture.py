@@ -210,6 +210,31 @@ def test_a_visitor_cannot_run_code(lecture: Lecture) -> None:
     assert page.evaluate(INTRUDE, [lecture.kernel(), lecture.token]) == ["kernel_info_reply"]
 
 
+STATE = "speed=12.3&view=front&method=sdls&motion=run"
+HOSTILE = "&meth=<img src=x onerror=alert(1)>&step_frequency=99"
+
+
+def test_an_address_opens_a_state_and_a_link_leads_back_to_it(lecture: Lecture) -> None:
+    page = lecture.page
+    gait = f"{lecture.site}voila/render/gait.ipynb"
+    page.goto(f"{gait}?{lecture.token}&{STATE}{HOSTILE}", wait_until="commit")
+    page.wait_for_selector(f"{DRIVER}[aria-label*='running by sdls']", timeout=2 * READY)
+    told = page.locator(".ikteach-status [role=alert]", has_text="Not set").inner_text()
+    assert "no control 'meth'; did you mean 'method'? And step_frequency must be a number" in told
+    assert "from 0.1 to 3, not '99'. The rest is set." in told
+    page.locator(".ikteach-stage").first.focus()
+    page.keyboard.press("l")
+    link = page.get_by_label("Link to this")
+    link.wait_for(timeout=READY)
+    assert link.input_value() == f"{gait}?method=sdls&motion=running&view=front&speed=12.3"
+    assert link.evaluate("one => one.selectionEnd - one.selectionStart === one.value.length")
+    page.screenshot(path=SHOTS / "lecture_link.png")
+    page.keyboard.press("Escape")
+    assert page.evaluate("document.activeElement.classList.contains('ikteach-stage')")
+    page.get_by_role("button", name="Link to this").click()
+    link.wait_for(timeout=READY)
+
+
 def test_without_the_token_nobody_gets_in(lecture: Lecture) -> None:
     with urllib.request.urlopen(f"{lecture.site}voila/render/workbench.ipynb") as answer:
         assert urlsplit(answer.url).path == "/login"

@@ -12,9 +12,9 @@ import pytest
 from ikteach import figures
 from ikteach.course import plainly, show_me, source
 from ikteach.course.plain import PLAIN, largest_difference
-from ikteach.course.tries import controls
 from ikteach.view import BendBench, Poser, Simulator, Workbench
 from ikteach.view.chapters.transpose import slope_bench
+from ikteach.view.live.controls import controls
 from ikteach.view.widgets.closing import close_all
 
 ROOT = Path(__file__).parents[2]

@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import { mock, test } from "node:test";
 import { number } from "../../ikteach/course/fields.js";
 import { exchanged } from "../../ikteach/course/ranking.js";
+import { addressOf } from "../../ikteach/view/live/link.js";
 import { powers, share } from "../../ikteach/view/live/plot.js";
 import { recent, split } from "../../ikteach/view/live/strips.js";
 import { floats } from "../../ikteach/view/widgets/binary.js";
@@ -16,6 +17,14 @@ test("numbers are read from a view that begins anywhere", () => {
   new DataView(bytes.buffer).setFloat32(5, 1.5, true);
   assert.deepEqual([...floats(new DataView(bytes.buffer, 5, 8))], [1.5, 0]);
   assert.deepEqual([...floats(new Float32Array([2, 3]).buffer)], [2, 3]);
+});
+
+test("a link is an address on a page of the lecture, and elsewhere what a cell needs", () => {
+  const lecture = { origin: "http://a:1", pathname: "/voila/render/gait.ipynb" };
+  assert.equal(addressOf("speed=9", lecture), "http://a:1/voila/render/gait.ipynb?speed=9");
+  assert.equal(addressOf("", lecture), "http://a:1/voila/render/gait.ipynb");
+  const lab = { origin: "http://a:1", pathname: "/lab/tree/07_gait.ipynb" };
+  assert.equal(addressOf("speed=9", lab), 'preset(figure, "speed=9")');
 });
 
 test("the front of the globe goes left as the camera goes right, and down as it goes up", () => {

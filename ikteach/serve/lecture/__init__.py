@@ -8,7 +8,7 @@ import argparse
 import os
 import socket
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from ikteach.publish.delivery import deliver, find_course, report
 from ikteach.publish.parser import Parser, RefusedError
@@ -17,9 +17,11 @@ from ikteach.serve import lab, ports
 if TYPE_CHECKING:
     from ikteach.view.chapters.workbench import Workbench
 
+Figure = TypeVar("Figure")
 PAGES = Path(__file__).parent / "pages"
 FIRST_PAGE = "workbench.ipynb"
 FOLDER = Path("ikteach-lecture")
+NO_STATE = {"token", "voila-template", "voila-theme"}  # what an address says to the server
 OPEN_TO_ROOM = "IKTEACH_ROOM"  # set for the kernels when others than the lecturer may open pages
 
 
@@ -80,6 +82,18 @@ def _show(options: argparse.Namespace, extra: list[str]) -> int:
     return 0
 
 
+def addressed(figure: Figure) -> Figure:
+    """Set a page's figure as the page's address says.
+
+    `workbench.ipynb?method=sdls&speed=9`; the form is that of `ikteach.view.live.preset`.
+    """
+    from ikteach.view import preset
+
+    query = os.environ.get("QUERY_STRING", "")  # Voilà tells the page's kernel
+    state = [one for one in query.split("&") if one.partition("=")[0] not in NO_STATE]
+    return preset(figure, "&".join(state))
+
+
 def workbench() -> "Workbench":
     """Make a page's workbench; in a room it keeps no files."""
     from ikteach.view.chapters.workbench import Workbench
@@ -88,7 +102,7 @@ def workbench() -> "Workbench":
     bench.stay()
     if os.environ.get(OPEN_TO_ROOM):
         bench.keep_no_files()
-    return bench
+    return addressed(bench)
 
 
 def own_address() -> str:

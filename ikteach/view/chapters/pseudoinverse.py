@@ -8,7 +8,9 @@ from ikteach.motion import gait, per_chain, whole
 from ikteach.solvers import Solver, pseudoinverse
 from ikteach.study.experiment import capped
 from ikteach.view.chapters.gait import GaitPlayer
+from ikteach.view.live.link import StateLink
 from ikteach.view.live.panel import Does, Panel, slider
+from ikteach.view.live.preset import link_of
 from ikteach.view.widgets import doors
 from ikteach.view.widgets.cell import Cell
 from ikteach.view.widgets.picture import Still
@@ -48,7 +50,8 @@ class CapPlayer(Cell):
         super().__init__(slot, player.note)
         self.player = player
         player.controls["method"].description = "Cap"
-        panel = Panel(
+        player.whole = self
+        panel = self.panel = Panel(
             "Caps",
             [
                 {"cap": Does(slider("cap [° per step]", degrees, *CAP, 0.5), self._cap)},
@@ -69,6 +72,10 @@ class CapPlayer(Cell):
     def still(self) -> Still:
         """Draw it for a place without a kernel."""
         return self.player.still()
+
+    def make_link(self) -> StateLink:
+        """Make the widget that links to its state."""
+        return StateLink(lambda: link_of(self), self.guarded)
 
     def acted(self) -> None:
         """Draw the change that a slider has made."""

@@ -6,6 +6,8 @@ from typing import Any, NamedTuple
 import ipywidgets as widgets
 
 from ikteach.checks import function
+from ikteach.view.live.link import StateLink
+from ikteach.view.live.preset import link_of
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import doors
 from ikteach.view.widgets.cell import Cell
@@ -29,6 +31,7 @@ class Bench(Cell):
     `show(**values)` makes the picture whenever a control moves.
 
     controls  {name: widget with a value}
+    first     the values with which it begins
     buttons   {label: its action}; then the picture is made anew
     scene     a live scene that `show` moves; the picture is then a chart beside it
     panel     the controls as they are laid out; one under the other, if not given
@@ -53,6 +56,7 @@ class Bench(Cell):
         show, buttons = function("show", show), doors.named("buttons", buttons or {}, function)
         super().__init__(slot, Note() if scene is None else scene.note)
         self.controls, self.scene = controls, scene
+        self.first = self.values
         self._show, self._stale = show, False
         self._waiting: list[Callable[[], None]] = []
         self._picture, self._below = Picture(), Prose()
@@ -87,6 +91,10 @@ class Bench(Cell):
         """Draw it for a place without a kernel."""
         png = self._picture.png if self.scene is None else self.scene.still().png
         return Still(png, self.words)
+
+    def make_link(self) -> StateLink:
+        """Make the widget that links to its state."""
+        return StateLink(lambda: link_of(self), self.guarded, button=self.scene is None)
 
     def _draw(self) -> None:
         waiting, self._waiting, self._stale = self._waiting, [], False
@@ -127,6 +135,7 @@ class Bench(Cell):
                 return [Arranged(seen, [*rows, below], wide=True), self.status]
             return [Arranged([*chart, self.note.widget], [*rows, below], chart=True), self.status]
         scene.driver.on_page = self._seen
+        scene.offer({"l": ("makes a link to this state", self.guarded(self.show_link))})
         scene.widget.add_class("ikteach-told")  # what its words say, `below` shows
         return [Arranged([scene.widget], [*rows, *chart, below]), self.status]
 

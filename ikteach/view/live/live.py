@@ -6,7 +6,10 @@ from functools import partial
 from time import monotonic
 from typing import Any
 
-from ikteach.view.live.panel import play_button, press
+from ikteach.view.live.controls import parts_of
+from ikteach.view.live.link import StateLink
+from ikteach.view.live.panel import Panel, play_button, press
+from ikteach.view.live.preset import link_of
 from ikteach.view.live.strips import EVERY, Strips
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets.actor import message_of
@@ -35,6 +38,7 @@ class Live(Cell):
     REPORT_EVERY = 30  # ticks
     SELDOM = 3  # times as rarely come curves and words, where the machine is too slow for all
     choosing: Any = None
+    whole: Cell | None = None  # the figure of which it is a part
     _task: asyncio.Task[None] | None = None
 
     def __init__(
@@ -64,12 +68,23 @@ class Live(Cell):
         return {
             " ": ("plays and pauses", lambda: press(self.play_button, not self.play_button.value)),
             ".": ("lets one tick pass", self.step),
+            "l": ("makes a link to this state", lambda: (self.whole or self).show_link()),
             "s": ("slows time down to a half, to a quarter, and no more", self.slow_down),
             **{
                 str(i): (f"shows {name}", partial(press, self.choosing, name))
                 for i, name in enumerate(methods[:9], start=1)
             },
         }
+
+    def begun(self) -> None:
+        """Note the values with which its controls begin."""
+        for part in parts_of(self):
+            if isinstance(part, Panel):
+                part.first = part.values
+
+    def make_link(self) -> StateLink:
+        """Make the widget that links to its state."""
+        return StateLink(lambda: link_of(self), self.guarded)
 
     def slow_down(self) -> None:
         """Let time pass at the next of `PACES`."""

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import ipywidgets as widgets
 
 from ikteach.view.live.sliders import LogSlider, Slider, WholeSlider
+from ikteach.view.live.turns import Turns
 from ikteach.view.widgets import doors
 
 Act = Callable[..., Any]
@@ -37,6 +38,7 @@ class Panel:
     layout    of the whole
 
     controls  {name: widget}
+    turns     who set them last
     widget    all of it, to be shown
     """
 
@@ -53,12 +55,12 @@ class Panel:
     ) -> None:
         self.title, self._shows, self._guard = title, shows, guard
         self.controls: dict[str, Any] = {}
-        self._quiet = False
+        self._quiet, self.turns = False, Turns()
         boxes = [self._box(row) for row in rows]
         if folded:
             parts = [widgets.VBox([self._box(row) for row in part]) for part in folded.values()]
             boxes.append(widgets.Accordion(parts, titles=list(folded), selected_index=opened))
-        self._first = self.values
+        self.first = self.values
         self.widget = widgets.VBox(boxes, layout=layout)
 
     @property
@@ -79,6 +81,7 @@ class Panel:
         try:
             for name, value in values.items():
                 control = self.controls[name]
+                self.turns.follow(name, control.value, value)
                 if isinstance(control, widgets.FloatSlider | widgets.IntSlider):
                     control.min, control.max = min(control.min, value), max(control.max, value)
                 control.value = value
@@ -91,7 +94,7 @@ class Panel:
 
     def restore(self) -> None:
         """Set controls to their first values, without acting."""
-        self.put(**self._first)
+        self.put(**self.first)
 
     def disable(self) -> None:
         """Disable all controls: no person changes anything more."""
@@ -115,6 +118,7 @@ class Panel:
 
         def changed(change: Any) -> None:
             if not self._quiet:
+                self.turns.ask(name)
                 act(change["new"])
 
         control.observe(changed, "value")

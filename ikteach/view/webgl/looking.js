@@ -177,6 +177,7 @@ export class Looking {
       const pressed = { "aria-pressed": model.get("measuring") };
       buttons.push(this.#button("d", "Distances", pressed));
     }
+    if ("l" in model.get("acts")) buttons.push(this.#button("l", "Link to this"));
     if (pace) buttons.push(this.#button("s", `Time ${pace}`));
     const own = Object.entries(OWN).map(([key, [, does]]) => [key, does]);
     const keys = [...acts, ...own, ...(model.get("measures") ? [["d", MEASURE]] : [])];

@@ -23,14 +23,19 @@ class Cell(Living, widgets.VBox):  # type: ignore[misc]
     note    where the still picture stands, among the `children`; None: there is no such picture
     status  tells of progress and of errors
 
+    link    to its state, once it is shown; None: it has no controls to set
+
     A subclass makes its parts after `super().__init__`, and last puts them in place as `children`.
     """
+
+    children: Any
 
     def __init__(self, slot: str | None, note: Note | None = None) -> None:
         self._act = Actor()  # first, so that one that fails half made can be ended
         super().__init__()
         self.add_class("ikteach-figure")
         self.slot, self.note, self.status = slot, note, Status()
+        self.link: Any = None
 
     def still(self) -> Still | None:
         """Draw it for a place without a kernel.
@@ -38,6 +43,16 @@ class Cell(Living, widgets.VBox):  # type: ignore[misc]
         None if there is nothing to see.
         """
         return None
+
+    def make_link(self) -> Any:
+        """Make the widget that links to its state, if any."""
+        return None
+
+    def show_link(self) -> None:
+        """Show a link to the state of this moment."""
+        self._have_link()
+        if self.link is not None:
+            self.link.show()
 
     def acted(self) -> None:
         """Go on after a guarded callback, whether it failed or not."""
@@ -72,6 +87,13 @@ class Cell(Living, widgets.VBox):  # type: ignore[misc]
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
         """Show the live widget, and beside it the still picture."""
+        self._have_link()
         bundle = super()._repr_mimebundle_(**kwargs)
         still = self.still()
         return bundle if still is None or self.note is None else self.note.beside(bundle, still)
+
+    def _have_link(self) -> None:
+        if self.link is None and (link := self.make_link()) is not None:
+            self.link = link
+            at = self.children.index(self.status) + 1 if self.status in self.children else 0
+            self.children = [*self.children[:at], link, *self.children[at:]]

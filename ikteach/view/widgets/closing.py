@@ -39,6 +39,9 @@ class Living:
         if "__init__" in vars(cls):
             cls.__init__ = _whole(cls.__init__)  # type: ignore[method-assign]
 
+    def begun(self) -> None:
+        """Note the state in which it was made."""
+
     def end(self) -> None:
         """Stop everything that goes on by itself.
 
@@ -98,6 +101,7 @@ def _whole(make: Callable[..., None]) -> Callable[..., None]:
             if not isinstance(self.slot, str | None):
                 raise TypeError(f"a slot is a name, or None for none, not {self.slot!r}")
         self._belongings = tuple(parts)
+        self.begun()
         before = occupant(self.slot)
         if before is not None:
             before.close()
