@@ -52,6 +52,7 @@ class Live(Cell):
         """Have this scene follow the session from now on."""
         self.scene, self.note = scene, scene.note
         scene.driver.on_page, scene.driver.on_calm = self._seen, self._rest
+        scene.driver.observe(self._split, "panes")
         scene.driver.pace, scene.driver.measures = PACES[self._slow], len(scene.stage) == 1
         scene.offer({key: (words, self.guarded(act)) for key, (words, act) in self.acts().items()})
 
@@ -153,6 +154,10 @@ class Live(Cell):
         if not self._rested:
             self._rested = True
             self._set_playing(False)
+
+    def _split(self, _: Any) -> None:
+        """Have controls agree with a key that showed more views, or fewer."""
+        self.acted()
 
     def _toggled(self, change: Any) -> None:
         if change["new"] != self.playing:  # by a person, and not by `say_playing`

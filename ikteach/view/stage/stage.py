@@ -69,10 +69,12 @@ class View(Protocol):
     stage    which figures stand where
     layers   {name: whether it is drawn}, for the names in `layers.LAYERS`
     dark     whether the background is dark; may be set at any time
+    views    how many views are shown at once, 1, 2 or 4; may be set
     """
 
     widget: Any
     dark: bool
+    views: int
     stage: "Stage"
 
     @property
@@ -89,7 +91,7 @@ class View(Protocol):
         """Draw a layer, or do not; LookupError for an unknown name."""
 
     def look_from(self, side: str) -> None:
-        """Put the camera to one of `CAMERAS`, or to "plane"."""
+        """Put the first camera to one of `CAMERAS`, or to "plane"."""
 
     def clear(self) -> None:
         """Forget trails and footprints."""

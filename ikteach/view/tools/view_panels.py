@@ -14,6 +14,7 @@ from ikteach.view.live.live import Live
 from ikteach.view.live.panel import Does, Panel, button, choice, dropdown, slider, tick_box
 from ikteach.view.stage.layers import LAYERS
 from ikteach.view.stage.stage import CAMERAS
+from ikteach.view.stage.views import VIEWS
 from ikteach.view.tools.session_panels import LABEL, LOOK, Guard
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets.ball import RotationBall
@@ -62,12 +63,14 @@ class ViewPanel(Panel):
             for name in (*LAYERS, "targets")
         }
         projections = choice("Projection", ["perspective", "orthographic"], **LABEL)
+        counts = [str(count) for count in VIEWS]
         figures = dropdown("Figures", [ONE, GHOST, BESIDE, OVER], **LABEL)
         ghost = dropdown("ghost", list(live.session.methods), **LABEL)
         super().__init__(
             "View",
             [
                 {"side": Does(dropdown("View", list(CAMERAS), **LABEL), self.look_from)},
+                {"views": Does(choice("Views at once", counts, "1", **LABEL), self._split)},
                 {"projection": Does(projections, self._project)},
                 {"figures": Does(figures, set_figures)},
                 {"ghost": Does(ghost, lambda _: self._haunt())},
@@ -75,7 +78,7 @@ class ViewPanel(Panel):
                 {"effector": dropdown("J and ellipsoid of", names, **LABEL)},
                 {"dark": Does(tick_box("dark"), self._darken)},
             ],
-            shows=lambda: {"dark": live.scene.dark},
+            shows=lambda: {"dark": live.scene.dark, "views": str(live.scene.views)},
             guard=guard,
         )
 
@@ -97,6 +100,7 @@ class ViewPanel(Panel):
         if self._dark_chosen:
             self._darken(values["dark"])
         self._project(values["projection"])
+        self._split(values["views"])
         self.straighten()
 
     def about(self, theta: Any) -> dict[str, Any]:
@@ -127,6 +131,9 @@ class ViewPanel(Panel):
         if self.values["figures"] != GHOST:
             self.put(figures=GHOST)
             self._set_figures(GHOST)
+
+    def _split(self, count: str) -> None:
+        self.live.scene.views = int(count)
 
     def _project(self, how: str) -> None:
         self.live.scene.cameras.orthographic = how == "orthographic"
