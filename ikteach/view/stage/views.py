@@ -39,8 +39,8 @@ def needed(stage: Stage, aspect: float) -> float:
 def tiles(count: int, aspect: float, least: float) -> tuple[int, int]:
     """Choose columns and rows for the views of a picture.
 
-    It is done as in panes.js. Two stand beside or below each other, so that what must be seen, `least` times as wide as high,
-    is the larger.
+    It is done as in panes.js. Two stand beside or below each other, so that what must be seen is
+    the larger; it is `least` times as wide as high.
     """
 
     def size(columns: int) -> float:

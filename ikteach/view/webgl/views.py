@@ -76,7 +76,7 @@ class Views:
         self._side = side
 
     def put_back(self, view: int) -> None:
-        """Put the camera of a view to where it was at first."""
+        """Put the camera of a view back to its side."""
         if 0 < view < self._count:
             name = self._names[view]
             self._beside[name].look_from(name)
