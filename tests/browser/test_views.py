@@ -140,7 +140,7 @@ def test_keys_go_from_view_to_view_and_act_on_one(scene: Notebook) -> None:
     for i in range(1, 5):
         page.keyboard.press("n")
         scene.settle("scene.driver.view", (chosen + i) % 4)
-    for i in range((SIDE - chosen) % 4):
+    for _ in range((SIDE - chosen) % 4):
         page.keyboard.press("n")
     scene.settle("scene.driver.view", SIDE)
     assert "▸ side" in page.locator(LABELS).all_inner_texts()

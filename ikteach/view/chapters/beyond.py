@@ -17,8 +17,9 @@ from ikteach.solvers import SOLVERS
 from ikteach.study import gait_report
 from ikteach.study.walks import lately, limbs, three_walks
 from ikteach.view.live.bands import JOINTS, Bands
-from ikteach.view.live.live import Live
+from ikteach.view.live.live import Live, recorded_bones
 from ikteach.view.live.panel import Does, Panel, button, choice, dropdown, slider, tick_box
+from ikteach.view.stage.layers import RECORDED_BONES
 from ikteach.view.stage.stage import sides_of
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import prose
@@ -107,11 +108,16 @@ class WalksPlayer(Live):
                 clock,
                 {"method": method},
                 {"view": Does(sides, self.scene.look_from), "ground": ground},
+                {"skeleton": Does(tick_box(RECORDED_BONES, False, width="auto"), self._haunt)},
             ],
             folded={"The natural walk": sliders, "Effectors of all": [asked]},
             opened=0,
             guard=self.guarded,
         )
+
+    def _haunt(self, on: bool) -> None:
+        """Show the bones of whom the walk was recorded from, or hide them."""
+        self.scene.switch(RECORDED_BONES, on)
 
     def _show(self, method: str) -> None:
         for session in self.session.sessions.values():
@@ -147,16 +153,22 @@ class WalksPlayer(Live):
         sessions = self.session.sessions
         floor = sessions["natural"].floor
         up = self.tree.index("pelvis.y.slide")
-        theta, targets = [], []
+        theta, targets, bones = [], [], list[Array | None]()
         for session in sessions.values():
             pose = session.theta[session.method].copy()
             pose[up] += (rise := floor - session.floor)
             theta.append(pose)
             targets.append(self._targets(session, pose, rise))
+            recorded = recorded_bones(session)
+            bones.append(None if recorded is None else recorded + (0, rise, 0))
         ground = sessions.get(self.panel.values["ground"])
         gone = 0.0 if ground is None else ground.gait.pace * ground.time
         self.scene.show(
-            np.array(theta), np.array(targets), floor=floor, advance=gone, change=self._changes
+            *(np.array(theta), np.array(targets)),
+            floor=floor,
+            advance=gone,
+            change=self._changes,
+            skeletons=bones,
         )
         if self.session.ticks // OFTEN != self._drawn:
             self._drawn = self.session.ticks // OFTEN

@@ -6,6 +6,9 @@ from functools import partial
 from time import monotonic
 from typing import Any
 
+from ikteach.arrays import Array
+from ikteach.motion.live.session import Session
+from ikteach.motion.paths.skeleton import bones_at
 from ikteach.view.live.panel import play_button, press
 from ikteach.view.live.strips import EVERY, Strips
 from ikteach.view.webgl.scene import Scene
@@ -14,6 +17,16 @@ from ikteach.view.widgets.cell import Cell
 from ikteach.view.widgets.picture import Still
 
 PACES = ("1×", "½×", "¼×")  # how fast time passes: each half as fast as the one before
+
+
+def recorded_bones(session: Session) -> Array | None:
+    """Return the bones of whom a session's motion was recorded from.
+
+    They are (b, 2, 3) [m]; None if it is no recording, or the targets are set by hand.
+    """
+    if session.by_hand:
+        return None
+    return bones_at(session.gait, session.phase, session.effectors, session.targets)
 
 
 class Live(Cell):

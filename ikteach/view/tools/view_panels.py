@@ -10,9 +10,9 @@ from ikteach.body import forward, jacobian
 from ikteach.motion.live.session import Session
 from ikteach.motion.reachable import annulus
 from ikteach.solvers import SOLVERS, ellipsoid
-from ikteach.view.live.live import Live
+from ikteach.view.live.live import Live, recorded_bones
 from ikteach.view.live.panel import Does, Panel, button, choice, dropdown, slider, tick_box
-from ikteach.view.stage.layers import LAYERS
+from ikteach.view.stage.layers import LAYERS, RECORDED_BONES
 from ikteach.view.stage.stage import CAMERAS
 from ikteach.view.stage.views import VIEWS
 from ikteach.view.tools.session_panels import LABEL, LOOK, Guard
@@ -21,6 +21,11 @@ from ikteach.view.widgets.ball import RotationBall
 
 ONE, GHOST = "one figure", "one and a ghost"
 BESIDE, OVER = "all, side by side", "all, overlaid"
+
+NOT_RECORDED = (
+    "The targets do not follow a recording now. Choose the motion “recorded”, or open a BVH file"
+    " under Recording: then its skeleton is seen."
+)
 
 
 def scene_of(session: Session, figures: str) -> Scene:
@@ -116,7 +121,10 @@ class ViewPanel(Panel):
             rows = J[:, 3 * i : 3 * i + 3]
             about |= {"columns": rows, "ellipsoid": ellipsoid(rows)}
         if on["reach"]:
-            about["reach"] = [annulus(session.tree, session.effectors, i)]
+            frames = forward(session.tree, theta)
+            about["reach"] = [annulus(session.tree, session.effectors, i, frames)]
+        if on[RECORDED_BONES]:
+            about["skeletons"] = [recorded_bones(session)] * len(theta)
         return about
 
     def _switch(self, layer: str, on: bool) -> None:
@@ -125,6 +133,8 @@ class ViewPanel(Panel):
                 target.visible = on
         else:
             self.live.scene.switch(layer, on)
+        if on and layer == RECORDED_BONES and recorded_bones(self.live.session) is None:
+            self.live.status.say(NOT_RECORDED)
 
     def _haunt(self) -> None:
         """Show a ghost, as soon as one is chosen."""

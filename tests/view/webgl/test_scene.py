@@ -16,8 +16,8 @@ from ikteach.solvers.singularity import ellipsoid
 from ikteach.view import Scene, StillScene
 from ikteach.view.stage.forms import Ball
 from ikteach.view.stage.layer import Layer, upright
-from ikteach.view.stage.layers import LAYERS
-from ikteach.view.stage.stage import CAMERAS, View, picture_axes
+from ikteach.view.stage.layers import BONES, LAYERS
+from ikteach.view.stage.stage import CAMERAS, Stage, View, picture_axes
 from ikteach.view.stage.trails import Prints, Trail
 from ikteach.view.stage.views import VIEWS, tiles
 from ikteach.view.webgl.cameras import looking, quaternion
@@ -30,6 +30,7 @@ TARGETS = HERE + [0.1, 0.05, 0]
 J = jacobian(TREE, FRAMES, EFFECTORS)[6:9]
 DRAWN = {
     "effector": 2, "columns": J, "ellipsoid": ellipsoid(J), "reach": [((0.2, 0.4, 0), 0.1, 0.7)],
+    "skeletons": [[[(0, 0, 0), (0, 0.5, 0)], [(0, 0.5, 0), (0.4, 0.5, 0)]]],
 }  # fmt: skip
 
 
@@ -372,6 +373,26 @@ def test_several_views_look_from_their_sides(make, count):
         assert camera in scene.scene.children  # which has it drawn again when it turns
     scene.views = 1
     assert len(scene.renderer.controls) == len(scene.driver.panes) == 1
+
+
+def test_a_recorded_skeleton_has_its_longest_bones_and_hangs_on_its_figure():
+    stage = Stage(TREE, EFFECTORS, ["a", "b"])
+    layer = LAYERS["recorded skeleton"](stage)
+    start = np.random.default_rng(0).normal(size=(BONES + 9, 3))
+    length = np.arange(BONES + 9) / 100  # the first has none
+    bones = np.stack([start, start + length[:, None] * [0, 1, 0]], axis=1)
+    now = stage.now(THETA, TARGETS, skeletons=[None, bones])
+    rows = layer.place(now).reshape(2, BONES, 3, 4)
+    assert np.isnan(rows[0]).all()
+    along = rows[1, :, :, 1]
+    assert sorted(along[:, 1]) == pytest.approx(length[-BONES:])
+    assert rows[1, 0, :, 3] == pytest.approx(start[-1] + stage.places[1])
+    few = layer.place(stage.now(THETA, TARGETS, skeletons=[bones[:3]])).reshape(2, BONES, 3, 4)
+    assert np.isfinite(few[0, :, 0, 0]).sum() == 2
+    wrong = {"shape": [bones[0]], "finite": [bones * np.nan], "2 figures": [None] * 3}
+    for words, skeletons in wrong.items():
+        with pytest.raises(ValueError, match=words):
+            stage.now(THETA, TARGETS, skeletons=skeletons)
 
 
 def test_a_key_goes_through_the_numbers_of_views_and_one_puts_a_view_back(make):
