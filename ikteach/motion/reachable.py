@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Mask
-from ikteach.body import Effectors, Tree, forward, jacobian, locate
+from ikteach.body import Effectors, Frames, Tree, forward, jacobian, locate
 from ikteach.checks import number
 from ikteach.motion.checks import checked
 from ikteach.solvers import dls
@@ -55,17 +55,31 @@ def nearest(tree: Tree, effectors: Effectors, targets: ArrayLike, *, within: flo
     return _search(tree, effectors, targets, number("within", within))
 
 
-def annulus(tree: Tree, effectors: Effectors, i: int) -> tuple[Array, float, float]:
+def annulus(
+    tree: Tree, effectors: Effectors, i: int, frames: Frames | None = None
+) -> tuple[Array, float, float]:
     """Return effector i's base, and how near and far it stretches.
 
     The base is where its chain is fixed (3,) [m]; the two distances [m] are how near and far the
-    chain could stretch.
+    chain could stretch. A body that floats gets everywhere, so its reach is asked from where it is
+    carried: the base of a walker's hand is its pelvis, (..., 3) where `frames` (...) have it, or as
+    it is at rest.
 
     It is as if every joint could turn any way: links ℓ reach from max(0, 2 max ℓ − Σℓ) to Σℓ.
     Limits and axes only take from that. A slide makes its link as long, or as short, as its limits
     let it.
     """
-    limb = _limb(tree, effectors, i)
+    rows = sorted(tree.above(int(effectors.joints[i])))
+    carried = _carried(tree, rows)
+    frames = forward(tree, tree.rest) if frames is None else frames
+    if carried == len(rows):  # it is on what is carried, and stays as far from its middle
+        length = float(effectors.w[i] * np.linalg.norm(effectors.offsets[i]))
+        return frames.positions[..., rows[-1], :], length, length
+    limb = _limb(tree, effectors, i, rows[carried:])
+    if carried:
+        under = frames.orientations[..., rows[carried - 1], :, :]
+        base = frames.positions[..., rows[carried - 1], :] + np.matvec(under, limb.base)
+        limb = limb._replace(base=base)
     if limb.endless.any():
         raise ValueError(f"a slide without limits has no reach: effector {effectors.names[i]!r}")
     inner = (limb.near + limb.far).max() - limb.length  # a long link, less all others stretched
@@ -99,12 +113,26 @@ class _Limb(NamedTuple):
         return self.tree.slide & ~(np.isfinite(self.tree.lower) & np.isfinite(self.tree.upper))
 
 
-def _limb(tree: Tree, effectors: Effectors, i: int) -> _Limb:
+def _carried(tree: Tree, rows: list[int]) -> int:
+    """Count the first rows of a chain by which the whole body floats, 0 if it does not.
+
+    They are slides without limits, and hinges without limits that stand where these have come to.
+    """
+    endless = np.isinf(tree.upper) & np.isinf(tree.lower)
+    free = endless | (~tree.slide & (tree.upper - tree.lower >= FREE))
+    there = np.array([not tree.offsets[row].any() for row in rows]) | tree.slide[rows]
+    stops = np.flatnonzero(~(free[rows] & there))
+    count = int(stops[0]) if len(stops) else len(rows)
+    return count if (tree.slide[rows] & endless[rows])[:count].any() else 0
+
+
+def _limb(tree: Tree, effectors: Effectors, i: int, chain: list[int] | None = None) -> _Limb:
     """Find the joints that carry effector i, full turns without limits.
 
-    A direction is a point on joints that all stand in one place, and whose slides stay.
+    They are those of `chain`, all of them if it is not given. A direction is a point on joints that
+    all stand in one place, and whose slides stay.
     """
-    rows = np.array(sorted(tree.above(int(effectors.joints[i]))))
+    rows = np.array(sorted(tree.above(int(effectors.joints[i]))) if chain is None else chain)
     free = ~tree.slide[rows] & (tree.upper[rows] - tree.lower[rows] >= FREE)
     names, offsets = tuple(tree.names[row] for row in rows), effectors.w[i] * tree.offsets[rows]
     base, offsets[0] = offsets[0].copy(), 0

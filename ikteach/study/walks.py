@@ -16,6 +16,7 @@ from ikteach.motion.path import Motion
 from ikteach.motion.paths.perform import imitate, perform
 from ikteach.motion.paths.recorded import Recorded
 from ikteach.motion.paths.retarget import CMU, bones_of, retarget
+from ikteach.motion.paths.skeleton import with_skeleton
 from ikteach.motion.paths.walk import natural
 from ikteach.motion.track import Track
 from ikteach.study.gaits import gait_report
@@ -60,6 +61,7 @@ def three_walks(recording: Any) -> dict[str, tuple[Figure, Motion]]:
     tree, walk = walker().tree, gait.walking
     thirteen = Figure(tree, limbs(tree))
     recorded = levelled(retarget(recording, thirteen, CMU, feet=FEET))
+    recorded = with_skeleton(recorded, recording, CMU, tree)
     times = walk.period * np.arange(FRAMES) / FRAMES
     course = walk.on(*Figure(tree, _as_thesis(tree)))
     targets = np.array([course.at(walk.rate * t) for t in times])
@@ -133,6 +135,7 @@ def for_human(path: Motion, figure: Figure, name: str) -> Recorded:
         four.names,
         name=name,
         standing=standing,
+        skeleton=getattr(path, "skeleton", None),
         floor=path.on(*figure).floor - float(pelvis[:, 1].mean()),
         speed=path.pace,
     )
@@ -145,8 +148,9 @@ def imported(recording: Any, name: str) -> Recorded:
     """
     tree = walker().tree
     figure = Figure(tree, limbs(tree))
-    path = retarget(recording, figure, bones_of(recording), feet=FEET)
-    return for_human(path, figure, name)
+    bones = bones_of(recording)
+    path = retarget(recording, figure, bones, feet=FEET)
+    return for_human(with_skeleton(path, recording, bones, tree), figure, name)
 
 
 def _as_thesis(tree: Tree) -> Effectors:

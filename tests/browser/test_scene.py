@@ -56,7 +56,8 @@ def draw():
     hand = locate(frames, effectors)[3]
     J = jacobian(tree, frames, effectors)[9:]
     scene.show(theta, targets.positions, effector=3, columns=J, ellipsoid=ellipsoid(J),
-               reach=[((0.23, 0.37, 0), 0.1, 0.7)])
+               reach=[((0.23, 0.37, 0), 0.1, 0.7)],
+               skeletons=[[[(0, -0.9, 0.1), (0, 0.7, 0.1)]]])
 targets.on_change(follow)
 follow()
 VBox([scene.widget, targets])"""

@@ -189,6 +189,31 @@ def test_a_slide_makes_its_link_short_and_long():
         annulus(*body(slide("a", lower=0)), 0)
 
 
+def test_the_reach_of_a_floating_body_is_asked_from_where_it_is_carried():
+    human, hand = figures.human(), figures.human().effectors.names.index("hand.l")
+    tree, effectors = figures.floating(human)
+    base, inner, outer = annulus(*human, hand)
+    rng = np.random.default_rng(0)
+    theta = rng.uniform(np.maximum(tree.lower, -3), np.minimum(tree.upper, 3), (500, len(tree)))
+    frames = forward(tree, theta)
+    centre, *reach = annulus(tree, effectors, hand, frames)
+    assert reach == [inner, outer]
+    root = tree.index("root.z")
+    turned = np.matvec(frames.orientations[:, root], base)
+    assert_allclose(centre, frames.positions[:, root] + turned, atol=1e-12)
+    far = np.linalg.norm(locate(frames, effectors)[:, hand] - centre, axis=-1)
+    assert (inner <= far).all()
+    assert (far <= outer).all()
+    # What is on the pelvis itself is as far from its middle as it is fixed there.
+    walker = figures.walker()
+    names = walker.effectors.names
+    assert annulus(*walker, names.index("pelvis"))[1:] == (0, 0)
+    assert annulus(*walker, names.index("heel.l"))[2] < 1.2
+    # A carriage carries an arm; an arm on a mast that ends is not carried.
+    rail = body(slide("x"), Joint("a", "x", (0, 0.2, 0), lower=-1, upper=1), end=(0.5, 0, 0))
+    assert annulus(*rail, 0)[1:] == (0.5, 0.5)
+
+
 @pytest.mark.parametrize("far", [1.0, 1e3, 1e6])
 def test_slides_without_limits_go_as_far_as_the_target_is(far):
     gantry = body(slide("x"), slide("y", "x", (0, 1, 0)), slide("z", "y", (0, 0, 1)))

@@ -28,12 +28,19 @@ beforeEach(async () => {
       },
     },
   };
-  scene = Object.assign(new Model(), { obj: {} });
-  renderer = Object.assign(new Model({ scene }), { trigger() {} });
+  scene = Object.assign(new Model(), { obj: {}, trigger() {} });
+  renderer = Object.assign(new Model({ scene, controls: [{ obj: {} }] }), { trigger() {} });
   const others = { renderer, node: { obj } };
   const get_model = async (id) => others[id];
   model = Object.assign(
-    new Model({ renderer: "IPY_MODEL_renderer", nodes: ["IPY_MODEL_node"], plan: [0], rows: 1 }),
+    new Model({
+      renderer: "IPY_MODEL_renderer",
+      nodes: ["IPY_MODEL_node"],
+      plan: [0],
+      rows: 1,
+      panes: [{ name: "free", way: null }],
+      needed: 1,
+    }),
     { widget_manager: { get_model } },
   );
   document.createElement = () => ({ getContext: () => ({ getExtension() {} }) });

@@ -37,7 +37,8 @@ class Seen extends Vector {
 
 test("what is moved stays in the picture, at its depth", () => {
   const camera = { obj: { position: new Seen() } };
-  const scene = new Scene(new Model({ camera, scene: new Model() }));
+  const controls = [new Model({ controlling: camera })];
+  const scene = new Scene(new Model({ controls, scene: new Model() }));
   const inside = new Seen(0.5, -0.9, 0.3);
   assert.equal(scene.seen(inside), inside);
   const { x, y, z } = scene.seen(new Seen(7, -0.2, 0.3));

@@ -24,14 +24,20 @@ interface Model extends Source {
   initPromise?: Promise<unknown>;
   views: Record<string, Promise<View>>;
   obj: any;
+  ikteach?: any; // ours: the scene of a renderer
 }
 
 /** A view of a pythreejs Renderer. */
 interface View {
   el: HTMLElement;
   isFrozen: boolean;
+  unfreeze(): void;
+  renderScene(): void;
   renderer: {
     domElement: HTMLCanvasElement;
+    setViewport(...box: number[]): void;
+    setScissor(...box: number[]): void;
+    setScissorTest(on: boolean): void;
     setPixelRatio(ratio: number): void;
     setSize(width: number, height: number, style: boolean): void;
   };
@@ -91,11 +97,15 @@ interface Camera extends Object3D {
   left: number;
   right: number;
   top: number;
+  bottom: number;
   zoom: number;
+  view: Record<string, number> | null;
+  setViewOffset(...cut: number[]): void;
   updateProjectionMatrix(): void;
 }
 
 interface Controls {
+  get(name: "controlling"): Model;
   obj: { enabled: boolean; target: Vector3; minZoom: number; maxZoom: number; update(): void };
   update_controlled(): void;
 }
@@ -111,6 +121,9 @@ interface Mesh extends Object3D {
 }
 
 // Ours
+
+/** A view that the kernel wants; `way` leads to its camera, if it is not free. */
+type Shown = { name: string; way: number[] | null };
 
 type Mover = (numbers: Float32Array) => void;
 type Frame = { frame: number; change: number };

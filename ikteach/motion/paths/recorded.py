@@ -23,6 +23,7 @@ class Recorded(NamedMotion):
                         one before
     targets  (T, k, 3)  [m]
     names    k names, of effectors
+    skeleton the bones of whom it was recorded from, of `with_skeleton`, if they are known
     standing (T, k)     whether each is to stand on the ground; none, if not given
     floor    height of the ground [m]
     pace     speed at which the ground goes by [m/s]
@@ -37,6 +38,7 @@ class Recorded(NamedMotion):
     names: tuple[str, ...] = ()
     name: str = "recorded"
     standing: Mask | None = None
+    skeleton: "Recorded | None" = None
     floor: float = 0.0
     speed: float = 0.0
     tempo: float = 1.0
@@ -97,7 +99,7 @@ class Recorded(NamedMotion):
 
     def settings(self) -> dict[str, Any]:
         """Return its parameters by name, without its data."""
-        data = ("times", "targets", "names", "standing")
+        data = ("times", "targets", "names", "standing", "skeleton")
         return {name: value for name, value in vars(self).items() if name not in data}
 
     def _place(self, phase: ArrayLike) -> tuple[Array, Any]:

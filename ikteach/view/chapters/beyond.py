@@ -12,13 +12,13 @@ from ikteach.formats.bvh import recorded_walk
 from ikteach.markup import Markup
 from ikteach.motion.live.abreast import Abreast
 from ikteach.motion.live.session import Session
-from ikteach.motion.paths import quality
 from ikteach.solvers import SOLVERS
 from ikteach.study import gait_report
 from ikteach.study.walks import lately, limbs, three_walks
-from ikteach.view.live.bands import JOINTS, Bands
-from ikteach.view.live.live import Live
+from ikteach.view.live.bands import LAST, OFTEN, Bands, last_stride
+from ikteach.view.live.live import Live, recorded_bones
 from ikteach.view.live.panel import Does, Panel, button, choice, dropdown, slider, tick_box
+from ikteach.view.stage.layers import RECORDED_BONES
 from ikteach.view.stage.stage import sides_of
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import prose
@@ -30,8 +30,6 @@ PARTS = ("pelvis", "feet", "knees", "elbows", "hands")  # effectors that are swi
 PART = {"heel": "feet", "ball": "feet", "knee": "knees", "elbow": "elbows", "hand": "hands"}
 NOBODY, SIDE = "nobody", "three-quarter"
 SHOWN, FIRST = "shown", "sdls"  # the one method of each walk, and which it is at first
-OFTEN = 6  # ticks from one picture of the angles to the next
-LAST = 150  # ticks that are measured
 TABLE = ("score", "slip", "drag", "clearance", "double support")
 PARAMETERS: Mapping[str, tuple[str, float, float, float]] = {
     "speed": ("speed [m/s]", 0.6, 1.6, 0.05),
@@ -107,11 +105,16 @@ class WalksPlayer(Live):
                 clock,
                 {"method": method},
                 {"view": Does(sides, self.scene.look_from), "ground": ground},
+                {"skeleton": Does(tick_box(RECORDED_BONES, False, width="auto"), self._haunt)},
             ],
             folded={"The natural walk": sliders, "Effectors of all": [asked]},
             opened=0,
             guard=self.guarded,
         )
+
+    def _haunt(self, on: bool) -> None:
+        """Show the bones of whom the walk was recorded from, or hide them."""
+        self.scene.switch(RECORDED_BONES, on)
 
     def _show(self, method: str) -> None:
         for session in self.session.sessions.values():
@@ -147,20 +150,26 @@ class WalksPlayer(Live):
         sessions = self.session.sessions
         floor = sessions["natural"].floor
         up = self.tree.index("pelvis.y.slide")
-        theta, targets = [], []
+        theta, targets, bones = [], [], list[Array | None]()
         for session in sessions.values():
             pose = session.theta[session.method].copy()
             pose[up] += (rise := floor - session.floor)
             theta.append(pose)
             targets.append(self._targets(session, pose, rise))
+            recorded = recorded_bones(session)
+            bones.append(None if recorded is None else recorded + (0, rise, 0))
         ground = sessions.get(self.panel.values["ground"])
         gone = 0.0 if ground is None else ground.gait.pace * ground.time
         self.scene.show(
-            np.array(theta), np.array(targets), floor=floor, advance=gone, change=self._changes
+            *(np.array(theta), np.array(targets)),
+            floor=floor,
+            advance=gone,
+            change=self._changes,
+            skeletons=bones,
         )
         if self.session.ticks // OFTEN != self._drawn:
             self._drawn = self.session.ticks // OFTEN
-            self.bands.draw({name: self._angles(one) for name, one in sessions.items()})
+            self.bands.draw({name: last_stride(one, LAST) for name, one in sessions.items()})
 
     def _targets(self, session: Session, pose: Array, rise: float) -> Array:
         """Place the targets that are drawn (k, 3); where none is, the mark lies on the body."""
@@ -169,17 +178,6 @@ class WalksPlayer(Live):
             if name in session.effectors.names:
                 places[i] = session.targets[session.effectors.names.index(name)] + (0, rise, 0)
         return places
-
-    def _angles(self, session: Session) -> tuple[Array, Array]:
-        """Find the shares of the last stride (T,), and its angles (T, 3) [degrees]."""
-        run, path = lately(session, LAST), session.gait
-        if run is None:
-            return np.zeros(0), np.zeros((0, 3))
-        share = quality.cycle(path, path.rate * run.times)[:, 0]
-        gone = share + np.append(0, np.cumsum(np.diff(share) < 0))  # in strides
-        last = gone > gone[-1] - 1
-        angles = quality.sagittal(self.tree, run.theta[last])
-        return share[last], np.stack([angles[joint][:, 0] for joint in JOINTS], axis=-1)
 
     def report(self) -> None:
         """Bring words and table up to date."""

@@ -13,6 +13,7 @@ from ikteach.motion.mix import Mix
 from ikteach.motion.path import Motion
 from ikteach.solvers import SOLVERS, Solver
 from ikteach.view.chapters.gait import session_table, session_words
+from ikteach.view.live.bands import LAST, OFTEN, Bands, last_stride
 from ikteach.view.live.live import Live
 from ikteach.view.live.panel import Act, Does, Panel, button
 from ikteach.view.live.strips import Strips
@@ -29,6 +30,7 @@ from ikteach.view.widgets.layout import Arranged
 from ikteach.view.widgets.prose import Prose
 
 ROOM = np.array([1.6, 1.8, 1.6])  # [m] how far from the pelvis a target may be put
+SHOWN, NORM = "shown", "Hip, knee and ankle on the norm's band"
 OPTIONS = [name for name in SESSION if name not in ("figure", "methods")] + ["folder", "slot"]
 
 
@@ -74,9 +76,13 @@ class Workbench(Live):
             titles=[*self.panels, "Recording", "One iteration, magnified"],
             selected_index=0,
         )
+        self.bands = Bands([SHOWN])
+        self._norm = widgets.Accordion([self.bands], titles=[NORM], selected_index=None)
+        self._norm.observe(self.guarded(lambda _: self._draw_bands()), "selected_index")
+        self._drawn = -1  # ticks, when the bands were drawn
         self._table, self._aside = Prose(), widgets.VBox()  # aside: a run that is looked at
         self._arranged = Arranged(self._stage(), [self._aside, self._drawer, self._table])
-        self.children = [self._arranged, self.status, self.strips]
+        self.children = [self._arranged, self.status, self.strips, self._norm]
         self.view.straighten()
         self._agree()
         self.report()
@@ -126,6 +132,15 @@ class Workbench(Live):
             change=self._changes,
             **self.view.about(theta),
         )
+
+        if abs(session.ticks - self._drawn) >= OFTEN:
+            self._draw_bands()
+
+    def _draw_bands(self) -> None:
+        """Draw hip, knee and ankle on the norm's band, while somebody looks at them."""
+        if self._norm.selected_index == 0:
+            self._drawn = self.session.ticks
+            self.bands.draw({SHOWN: last_stride(self.session, LAST)})
 
     def report(self) -> None:
         """Bring words and tables up to date."""

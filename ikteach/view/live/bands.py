@@ -8,14 +8,38 @@ from matplotlib.figure import Figure
 
 from ikteach.arrays import Array
 from ikteach.markup import as_label
+from ikteach.motion.live.session import Session
 from ikteach.motion.paths import quality
+from ikteach.study.walks import lately
 from ikteach.view.charts import STYLES
 from ikteach.view.live.canvas import Canvas
 from ikteach.view.stage.colours import effector_colour
 from ikteach.view.widgets.picture import Picture
 
 JOINTS = {"hip": (-30, 60), "knee": (-5, 90), "ankle": (-50, 40)}  # and the axis [degrees]
+OFTEN = 6  # ticks from one picture of the angles to the next
+LAST = 150  # ticks that are measured
 CYCLE = np.arange(51) / 50
+
+
+def last_stride(session: Session, last: int) -> tuple[Array, Array]:
+    """Find the shares of the last stride (T,), and its angles (T, 3) [degrees].
+
+    Of the shown method, in the last ticks. There are none before the second tick, and none where
+    nobody knows when a foot comes down: the targets are set by hand, or no foot stands.
+    """
+    run, path = lately(session, last), session.gait
+    nothing = np.zeros(0), np.zeros((0, 3))
+    if run is None or session.by_hand:
+        return nothing
+    try:
+        share = quality.cycle(path, path.rate * run.times)[:, 0]
+        angles = quality.sagittal(session.tree, run.theta)
+    except (ValueError, LookupError):  # nobody says when a foot stands, or it has no knees
+        return nothing
+    gone = share + np.append(0, np.cumsum(np.diff(share) < 0))  # in strides
+    now = gone > gone[-1] - 1
+    return share[now], np.stack([angles[joint][now, 0] for joint in JOINTS], axis=-1)
 
 
 class Bands(Picture):
@@ -80,5 +104,5 @@ def _words(off: Mapping[str, Array]) -> str:
         + ", ".join(f"{joint} {far:.0f}°" for joint, far in zip(JOINTS, fars, strict=True))
         for name, fars in off.items()
     )
-    said = "; ".join(each) or "no tick yet"
+    said = "; ".join(each) or "no stride yet"
     return f"Angles over the stride, left side. Off the norm, root mean square: {said}."

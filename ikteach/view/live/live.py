@@ -6,6 +6,9 @@ from functools import partial
 from time import monotonic
 from typing import Any
 
+from ikteach.arrays import Array
+from ikteach.motion.live.session import Session
+from ikteach.motion.paths.skeleton import bones_at
 from ikteach.view.live.controls import parts_of
 from ikteach.view.live.link import StateLink
 from ikteach.view.live.panel import Panel, play_button, press
@@ -17,6 +20,16 @@ from ikteach.view.widgets.cell import Cell
 from ikteach.view.widgets.picture import Still
 
 PACES = ("1×", "½×", "¼×")  # how fast time passes: each half as fast as the one before
+
+
+def recorded_bones(session: Session) -> Array | None:
+    """Return the bones of whom a session's motion was recorded from.
+
+    They are (b, 2, 3) [m]; None if it is no recording, or the targets are set by hand.
+    """
+    if session.by_hand:
+        return None
+    return bones_at(session.gait, session.phase, session.effectors, session.targets)
 
 
 class Live(Cell):
@@ -56,6 +69,7 @@ class Live(Cell):
         """Have this scene follow the session from now on."""
         self.scene, self.note = scene, scene.note
         scene.driver.on_page, scene.driver.on_calm = self._seen, self._rest
+        scene.driver.observe(self._split, "panes")
         scene.driver.pace, scene.driver.measures = PACES[self._slow], len(scene.stage) == 1
         scene.offer({key: (words, self.guarded(act)) for key, (words, act) in self.acts().items()})
 
@@ -168,6 +182,10 @@ class Live(Cell):
         if not self._rested:
             self._rested = True
             self._set_playing(False)
+
+    def _split(self, _: Any) -> None:
+        """Have controls agree with a key that showed more views, or fewer."""
+        self.acted()
 
     def _toggled(self, change: Any) -> None:
         if change["new"] != self.playing:  # by a person, and not by `say_playing`

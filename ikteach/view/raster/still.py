@@ -7,7 +7,8 @@ from typing import Unpack
 from ikteach.arrays import Array
 from ikteach.body import Effectors, Tree
 from ikteach.names import unknown
-from ikteach.view.raster.drawing import Drawing, legend
+from ikteach.view.raster.drawing import legend
+from ikteach.view.raster.split import Split
 from ikteach.view.stage.basics import BASICS
 from ikteach.view.stage.colours import effector_colour, paper
 from ikteach.view.stage.forms import kinds
@@ -42,7 +43,7 @@ class StillScene(Living):
         size = doors.scene(tree, effectors, names, apart, width, height)
         self.tree, self.effectors = tree, effectors
         self.stage = stage = Stage(tree, effectors, names, apart)
-        self._drawing = Drawing(stage, size)
+        self._split = Split(stage, size)
         self._basics = [layer(stage) for layer in BASICS]
         self._over = {name: layer(stage) for name, layer in LAYERS.items()}
         self._on: set[str] = set()
@@ -81,7 +82,7 @@ class StillScene(Living):
         """The last moment as a PNG; empty if there is none."""
         if not self._png and self._now is not None:
             over = [layer for name, layer in self._over.items() if name in self._on]
-            self._png = png(self._drawing, [*self._basics, *over], self._now, self._dark)
+            self._png = png(self._split, [*self._basics, *over], self._now, self._dark)
         return self._png
 
     @property
@@ -101,8 +102,21 @@ class StillScene(Living):
 
         "plane" looks along the normal of the figure's plane.
         """
-        self._drawing.look_from(side)
+        self._split.look_from(side)
         self._side = side
+        self._changed()
+
+    @property
+    def views(self) -> int:
+        """Tell how many views there are; may be set.
+
+        See `Scene.views`.
+        """
+        return self._split.count
+
+    @views.setter
+    def views(self, count: int) -> None:
+        self._split.count = count
         self._changed()
 
     def show(self, theta: Array, targets: Array, **about: Unpack[About]) -> None:
@@ -142,10 +156,11 @@ class StillScene(Living):
             rows.append(f"{name + ': ' if name else ''}{distances}")
         figure = "human" if self.stage.human else "figure"
         layers = "".join(f", {layer}" for layer, on in self.layers.items() if on)
-        return f"A {figure} from {self._side}{layers}. From the target: {'; '.join(rows)}."
+        beside = "".join(f", from {name}" for name in self._split.names[1:])
+        return f"A {figure} from {self._side}{beside}{layers}. From the target: {'; '.join(rows)}."
 
 
-def png(drawing: Drawing, layers: Sequence[Layer], now: Now, dark: bool) -> bytes:
+def png(drawing: Split, layers: Sequence[Layer], now: Now, dark: bool) -> bytes:
     """Draw one moment of these layers as a PNG.
 
     It has a legend of the targets.

@@ -24,6 +24,9 @@ from ikteach.view.stage.layer import Layer, hidden, upright
 from ikteach.view.stage.stage import SHOWN_AT, Now, picture_axes
 from ikteach.view.stage.trails import MARKS, PRINTS, Prints, Trail, feet
 
+RECORDED_BONES = "recorded skeleton"
+BONES = 64  # of a recorded skeleton that are drawn: fingers may be left out
+
 
 class WorldAxes(Layer):
     """The axes x, y and z where the figure is fixed.
@@ -218,7 +221,36 @@ class WorkspaceBounds(Layer):
         return found.reshape(-1, 3, 4)
 
 
+class RecordedBones(Layer):
+    """The bones of whom a motion was recorded from.
+
+    They are seen through the figure that follows it, and are pale and thin.
+    """
+
+    name = RECORDED_BONES
+
+    def build(self) -> None:
+        """Make `BONES` rods for each figure."""
+        rod = Rod(ORIGIN, (0, 1, 0), 0.011 * self.stage.unit)
+        rods = [rod] * BONES * len(self.stage)
+        self.add(rods, [PURPLE], opacity=0.75, through=True)
+
+    def place(self, now: Now) -> Array:
+        """Stretch rods along the longest bones."""
+        rows = np.full((len(self.stage), BONES, 3, 4), np.nan)
+        for i, bones in enumerate(now.skeletons):
+            length = np.linalg.norm(bones[:, 1] - bones[:, 0], axis=-1)
+            longest = np.argsort(-length, kind="stable")[:BONES]
+            longest = longest[length[longest] > 1e-6 * self.stage.unit]
+            start, end = (bones[longest, j] + self.stage.places[i] for j in (0, 1))
+            rows[i, : len(longest)] = sticks(start, end)
+        return rows.reshape(-1, 3, 4)
+
+
 LAYERS: dict[str, type[Layer]] = {
     layer.name: layer
-    for layer in (WorldAxes, JointAxes, Footprints, Trails, Columns, Ellipsoids, WorkspaceBounds)
+    for layer in (
+        *(WorldAxes, JointAxes, Footprints, Trails, Columns, Ellipsoids, WorkspaceBounds),
+        RecordedBones,
+    )
 }

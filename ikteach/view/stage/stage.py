@@ -47,8 +47,11 @@ class About(TypedDict, total=False):
     effector   at which effector the next two are drawn
     columns    (3, n) or (f, 3, n): that effector's rows of J [m/rad], an arrow per column
     ellipsoid  (directions (..., 3, 3) in columns, lengths (..., 3) [m/rad])
-    reach      (centre (3,), inner, outer [m]) of each chain, at most one per effector; a radius
-               that is infinite is not drawn. It is about the joint if `effector` is a direction
+    reach      (centre (3,) or (f, 3), inner, outer [m]) of each chain, at most one per effector; a
+               radius that is infinite is not drawn. It is about the joint if `effector` is a
+               direction
+    skeletons  of each figure in turn, bones (b, 2, 3) [m], from end to end, of whom its motion was
+               recorded from; or None
     frames     forward(tree, theta), from whoever has it already
     """
 
@@ -59,6 +62,7 @@ class About(TypedDict, total=False):
     columns: ArrayLike | None
     ellipsoid: tuple[ArrayLike, ArrayLike] | None
     reach: Sequence[tuple[ArrayLike, float, float]]
+    skeletons: Sequence[ArrayLike | None]
     frames: Frames | None
 
 
@@ -69,10 +73,12 @@ class View(Protocol):
     stage    which figures stand where
     layers   {name: whether it is drawn}, for the names in `layers.LAYERS`
     dark     whether the background is dark; may be set at any time
+    views    how many views are shown at once, 1, 2 or 4; may be set
     """
 
     widget: Any
     dark: bool
+    views: int
     stage: "Stage"
 
     @property
@@ -89,7 +95,7 @@ class View(Protocol):
         """Draw a layer, or do not; LookupError for an unknown name."""
 
     def look_from(self, side: str) -> None:
-        """Put the camera to one of `CAMERAS`, or to "plane"."""
+        """Put the first camera to one of `CAMERAS`, or to "plane"."""
 
     def clear(self) -> None:
         """Forget trails and footprints."""
@@ -113,6 +119,7 @@ class Now(NamedTuple):
     axes: Array | None  # (f, 3, 3) directions of the ellipsoid in columns
     lengths: Array | None  # (f, 3) [m/rad]
     reach: list[tuple[Array, float, float]]
+    skeletons: list[Array]  # of each figure (b, 2, 3) [m]
 
 
 class Stage:
@@ -278,6 +285,9 @@ class Stage:
         reach = about.get("reach", ())
         if len(reach) > k:
             raise ValueError(f"{k} effectors have at most {k} chains to show, not {len(reach)}")
+        skeletons = list(about.get("skeletons", ()))
+        if len(skeletons) > f:
+            raise ValueError(f"{f} figures have at most {f} skeletons to show")
         return Now(
             positions,
             _per_figure(frames.orientations, (f, n, 3, 3)),
@@ -291,6 +301,7 @@ class Stage:
             None if axes is None else _checked("directions of the ellipsoid", axes, (f, 3, 3)),
             None if lengths is None else _checked("lengths of the ellipsoid", lengths, (f, 3)),
             [(numbers("reach", centre), inner, outer) for centre, inner, outer in reach],
+            [_bones(one) for one in skeletons],
         )
 
     def far(self, now: Now) -> list[list[str]]:
@@ -327,6 +338,16 @@ def _checked(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:
     if not finite(array):
         raise ValueError(f"{name} must be finite, not {array[~np.isfinite(array)][0]}")
     return _per_figure(array, shape)
+
+
+def _bones(skeleton: ArrayLike | None) -> Array:
+    """Make bones (b, 2, 3) of finite numbers, of none if there is no skeleton."""
+    bones = np.zeros((0, 2, 3)) if skeleton is None else numbers("a skeleton", skeleton)
+    if bones.ndim != 3 or bones.shape[1:] != (2, 3):
+        raise ValueError(f"a skeleton has the shape (bones, 2, 3), not {bones.shape}")
+    if not finite(bones):
+        raise ValueError("the bones of a skeleton must be finite")
+    return bones
 
 
 def _number(name: str, value: Any) -> float:

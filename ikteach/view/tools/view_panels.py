@@ -10,16 +10,22 @@ from ikteach.body import forward, jacobian
 from ikteach.motion.live.session import Session
 from ikteach.motion.reachable import annulus
 from ikteach.solvers import SOLVERS, ellipsoid
-from ikteach.view.live.live import Live
+from ikteach.view.live.live import Live, recorded_bones
 from ikteach.view.live.panel import Does, Panel, button, choice, dropdown, slider, tick_box
-from ikteach.view.stage.layers import LAYERS
+from ikteach.view.stage.layers import LAYERS, RECORDED_BONES
 from ikteach.view.stage.stage import CAMERAS
+from ikteach.view.stage.views import VIEWS
 from ikteach.view.tools.session_panels import LABEL, LOOK, Guard
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets.ball import RotationBall
 
 ONE, GHOST = "one figure", "one and a ghost"
 BESIDE, OVER = "all, side by side", "all, overlaid"
+
+NOT_RECORDED = (
+    "The targets do not follow a recording now. Choose the motion “recorded”, or open a BVH file"
+    " under Recording: then its skeleton is seen."
+)
 
 
 def scene_of(session: Session, figures: str) -> Scene:
@@ -62,12 +68,14 @@ class ViewPanel(Panel):
             for name in (*LAYERS, "targets")
         }
         projections = choice("Projection", ["perspective", "orthographic"], **LABEL)
+        counts = [str(count) for count in VIEWS]
         figures = dropdown("Figures", [ONE, GHOST, BESIDE, OVER], **LABEL)
         ghost = dropdown("ghost", list(live.session.methods), **LABEL)
         super().__init__(
             "View",
             [
                 {"side": Does(dropdown("View", list(CAMERAS), **LABEL), self.look_from)},
+                {"views": Does(choice("Views at once", counts, "1", **LABEL), self._split)},
                 {"projection": Does(projections, self._project)},
                 {"figures": Does(figures, set_figures)},
                 {"ghost": Does(ghost, lambda _: self._haunt())},
@@ -75,7 +83,7 @@ class ViewPanel(Panel):
                 {"effector": dropdown("J and ellipsoid of", names, **LABEL)},
                 {"dark": Does(tick_box("dark"), self._darken)},
             ],
-            shows=lambda: {"dark": live.scene.dark},
+            shows=lambda: {"dark": live.scene.dark, "views": str(live.scene.views)},
             guard=guard,
         )
 
@@ -97,6 +105,7 @@ class ViewPanel(Panel):
         if self._dark_chosen:
             self._darken(values["dark"])
         self._project(values["projection"])
+        self._split(values["views"])
         self.straighten()
 
     def about(self, theta: Any) -> dict[str, Any]:
@@ -112,7 +121,10 @@ class ViewPanel(Panel):
             rows = J[:, 3 * i : 3 * i + 3]
             about |= {"columns": rows, "ellipsoid": ellipsoid(rows)}
         if on["reach"]:
-            about["reach"] = [annulus(session.tree, session.effectors, i)]
+            frames = forward(session.tree, theta)
+            about["reach"] = [annulus(session.tree, session.effectors, i, frames)]
+        if on[RECORDED_BONES]:
+            about["skeletons"] = [recorded_bones(session)] * len(theta)
         return about
 
     def _switch(self, layer: str, on: bool) -> None:
@@ -121,12 +133,17 @@ class ViewPanel(Panel):
                 target.visible = on
         else:
             self.live.scene.switch(layer, on)
+        if on and layer == RECORDED_BONES and recorded_bones(self.live.session) is None:
+            self.live.status.say(NOT_RECORDED)
 
     def _haunt(self) -> None:
         """Show a ghost, as soon as one is chosen."""
         if self.values["figures"] != GHOST:
             self.put(figures=GHOST)
             self._set_figures(GHOST)
+
+    def _split(self, count: str) -> None:
+        self.live.scene.views = int(count)
 
     def _project(self, how: str) -> None:
         self.live.scene.cameras.orthographic = how == "orthographic"

@@ -1,5 +1,6 @@
 """Where one looks from: the named sides, free turning, perspective and parallel projection."""
 
+from collections.abc import Callable
 from math import atan2, cos, degrees, hypot, radians, sin, tan
 
 import numpy as np
@@ -14,25 +15,35 @@ class Cameras:
 
     They look at the same thing.
 
-    renderer  is given the camera and its OrbitControls
     aspect    width over height of the picture
+    parallel  whether its first projection is parallel
+    switched  is called after another camera came into use
+
+    current   the camera in use
     """
 
-    def __init__(self, renderer: three.Renderer, stage: Stage, aspect: float) -> None:
-        self.renderer, self._stage, self._aspect = renderer, stage, aspect
+    def __init__(
+        self,
+        stage: Stage,
+        aspect: float,
+        *,
+        parallel: bool = False,
+        switched: Callable[[], object] = lambda: None,
+    ) -> None:
+        self._stage, self._aspect, self._switched = stage, aspect, switched
         # Near, far, and how close one may come, all as shares of where the named cameras are.
         self._usual = float(np.linalg.norm(stage.eye(stage.side, aspect) - stage.extent.centre))
         self._far = 20 * self._usual
-        self.perspective: three.PerspectiveCamera = renderer.camera
-        self.perspective.near, self.perspective.far = self._usual / 60, self._far
-        self._turning = {self.perspective: renderer.controls[0]}
-        self._bound(renderer.controls[0])
+        self.perspective: three.PerspectiveCamera | None = None
         self.parallel: three.OrthographicCamera | None = None
+        self._turning: dict[three.Camera, three.OrbitControls] = {}
+        self.current = self._camera(parallel)
+        self.look_from(stage.side)
 
     @property
-    def current(self) -> three.Camera:
-        """Give the camera in use."""
-        return self.renderer.camera
+    def turning(self) -> three.OrbitControls:
+        """Give the controls of the camera in use."""
+        return self._turning[self.current]
 
     @property
     def orthographic(self) -> bool:
@@ -43,25 +54,10 @@ class Cameras:
     def orthographic(self, on: bool) -> None:
         if on == self.orthographic:
             return
-        before = self.current
-        if on and self.parallel is None:
-            self.parallel = three.OrthographicCamera(
-                *(-1, 1, 1, -1),
-                near=-self._far,
-                far=self._far,
-                position=before.position,
-                quaternion=before.quaternion,
-            )
-            self._turning[self.parallel] = three.OrbitControls(controlling=self.parallel)
-            self._bound(self._turning[self.parallel])
-            # The scene listens to what is in it, so that a turned camera has it drawn again.
-            scene = self.renderer.scene
-            scene.children = [*scene.children, self.parallel]
-        camera = self.parallel if on else self.perspective
-        target = self._turning[before].target
-        self.renderer.camera = camera
-        self.renderer.controls = [self._turning[camera]]
+        before, target = self.current, self.turning.target
+        self.current = self._camera(on)
         self.put(before.position, target)
+        self._switched()
 
     def look_from(self, side: str) -> None:
         """Put the camera to one of the named sides.
@@ -77,14 +73,36 @@ class Cameras:
         """
         a, e = radians(azimuth), radians(min(max(elevation, -89.0), 89.0))
         r = self.distance if distance is None else distance
-        target = np.asarray(self._turning[self.current].target)
+        target = np.asarray(self.turning.target)
         away = r * np.array([sin(a) * cos(e), sin(e), cos(a) * cos(e)])
         self.put(target + away, target)
 
-    def _bound(self, turning: three.OrbitControls) -> None:
-        """Let the wheel come no closer than can be drawn, and go no farther than can be seen."""
-        turning.minDistance, turning.maxDistance = self._usual / 20, 10 * self._usual
-        turning.minZoom, turning.maxZoom = 1 / 10, 20.0  # the same of a parallel camera
+    def _camera(self, parallel: bool) -> three.Camera:
+        """Give the camera of a projection, made when it is first wanted."""
+        if parallel:
+            if self.parallel is None:
+                self.parallel = three.OrthographicCamera(
+                    *(-1, 1, 1, -1), near=-self._far, far=self._far
+                )
+                self._turning[self.parallel] = self._bound(self.parallel)
+            return self.parallel
+        if self.perspective is None:
+            self.perspective = three.PerspectiveCamera(
+                fov=FIELD, aspect=self._aspect, near=self._usual / 60, far=self._far
+            )
+            self._turning[self.perspective] = self._bound(self.perspective)
+        return self.perspective
+
+    def _bound(self, camera: three.Camera) -> three.OrbitControls:
+        """Make controls that come no closer than can be drawn, and go no farther than is seen."""
+        nearest, farthest = self._usual / 20, 10 * self._usual
+        return three.OrbitControls(
+            controlling=camera,
+            minDistance=nearest,
+            maxDistance=farthest,
+            minZoom=1 / 10,  # the same of a parallel camera
+            maxZoom=20.0,
+        )
 
     @property
     def angles(self) -> tuple[float, float]:
@@ -99,7 +117,7 @@ class Cameras:
 
     @property
     def _away(self) -> Array:
-        return np.subtract(self.current.position, self._turning[self.current].target)
+        return np.subtract(self.current.position, self.turning.target)
 
     def put(self, position: ArrayLike, target: ArrayLike) -> None:
         """Place the camera, and have it look at the target.
@@ -107,7 +125,7 @@ class Cameras:
         In the picture y is upwards.
         """
         eye, at = np.asarray(position, dtype=float), np.asarray(target, dtype=float)
-        camera, turning = self.current, self._turning[self.current]
+        camera, turning = self.current, self.turning
         if tuple(turning.target) != tuple(at.tolist()):
             turning.target = at.tolist()
         with camera.hold_sync():

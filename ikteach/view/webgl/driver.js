@@ -67,6 +67,7 @@ export class Driver {
     if (this.#gone || !scene) return;
     this.#scene = scene;
     this.#still.stop();
+    this.see();
     this.#stopFit = fit(scene, this.#status);
     this.#stopDrawn = listen(scene.model, { afterRender: () => this.#drawn() });
     this.#look(scene).catch((error) => complain(this.#given.el, error));
@@ -91,6 +92,16 @@ export class Driver {
   /** Ask the kernel for the newest frame, in a page that is looked at. */
   hello() {
     if (!document.hidden) this.#model.send({ hello: true, calm: matchMedia(CALM).matches });
+  }
+
+  /** Show the views that the kernel wants. */
+  see() {
+    const scene = this.#scene;
+    if (!scene) return;
+    scene.shown = this.#model.get("panes");
+    scene.needed = this.#model.get("needed");
+    scene.choose(Math.min(scene.chosen, scene.shown.length - 1));
+    scene.model.trigger("shown");
   }
 
   /** Take the objects that the kernel wants moved. */
@@ -176,7 +187,9 @@ function render(given) {
   const driver = new Driver(given, status, pictures, far);
 
   function describe() {
-    const words = model.get("description");
+    const views = model.get("panes").map((/** @type {Shown} */ { name }) => name);
+    const many = views.length > 1 ? ` ${views.length} views: ${views.join(", ")}.` : "";
+    const words = model.get("description") + many;
     status.textContent = words;
     status.setAttribute("aria-label", words);
   }
@@ -186,6 +199,10 @@ function render(given) {
     "msg:custom": (content, buffers) => driver.receive(content, buffers),
     "change:plan": () => driver.gather(),
     "change:description": describe,
+    "change:panes": () => {
+      describe();
+      driver.see();
+    },
   });
   const stopTheme = followTheme(model);
   document.addEventListener("visibilitychange", hello);

@@ -41,11 +41,18 @@ class Driver(Living, anywidget.AnyWidget):
     measures      whether there are distances to show, and
     measuring     whether the page shows those that `show` gives, of
     effectors     [name, colour] of each
+    panes         {"name", "way"} of each view that is shown, `Views.panes`
+    view          the one that keys act on, as the page says itself
+    needed        width over height of what each must show
+    splits        whether there may be several
     """
 
     _esm, _css = (
         script("view/webgl/driver.js"),
-        style("view/webgl/driver.css", "view/webgl/looking.css", "view/widgets/layout.css"),
+        style(
+            *(f"view/webgl/{name}.css" for name in ("driver", "looking", "labels")),
+            "view/widgets/layout.css",
+        ),
     )
     renderer = traitlets.Instance(Widget).tag(sync=True, **widget_serialization)
     nodes = traitlets.List(traitlets.Instance(Widget)).tag(sync=True, **widget_serialization)
@@ -58,6 +65,10 @@ class Driver(Living, anywidget.AnyWidget):
     measuring = traitlets.Bool(False).tag(sync=True)
     effectors: Any = traitlets.List().tag(sync=True)
     dark = traitlets.Bool(False).tag(sync=True)
+    panes: Any = traitlets.List().tag(sync=True)
+    view = traitlets.Int(0).tag(sync=True)
+    needed = traitlets.Float(1.0).tag(sync=True)
+    splits = traitlets.Bool(False).tag(sync=True)
     lacking = traitlets.Dict(LACKING, read_only=True).tag(sync=True)
 
     def __init__(self, renderer: Widget, **kwargs: Any) -> None:

@@ -4,6 +4,8 @@
 import { element, listen, listenTo, OWN_KEYS, set, take } from "../widgets/dom.js";
 import { bringIntoView } from "../widgets/inview.js";
 import { arrowOf, turned, ZOOM } from "./keys.js";
+import { Labels } from "./labels.js";
+import { pixelOf } from "./scene.js";
 
 /** @import { Scene } from "./scene.js" */
 
@@ -15,6 +17,8 @@ const OWN = {
   f: ["Full screen", "fills the screen with the picture, and gives it back"],
   p: ["Save picture", "saves the picture as PNG"],
 };
+const VIEWS = "shows one view; two, with the side; or four, with front, side and top";
+const NEXT = "goes to the next view: keys act there, as they do where one clicks";
 
 export class Looking {
   #scene;
@@ -48,6 +52,10 @@ export class Looking {
     const choose = () => stage.focus({ preventScroll: true });
     const events = { keydown: this.#press, dblclick: () => this.act("0"), click: choose };
     listenTo(stage, events, { signal });
+    const release = () => {
+      scene.pressed = false;
+    };
+    listenTo(window, { pointerup: release, pointercancel: release }, { signal, capture: true });
     listenTo(this.#box, { fullscreenchange: () => this.#fit() }, { signal });
     const sizes = new ResizeObserver(() => this.#before && this.#fit()); // and of the screen
     for (const one of [el, document.body]) sizes.observe(one);
@@ -57,9 +65,34 @@ export class Looking {
     el.prepend(tools);
     const show = () => this.#renew(tools);
     this.#stops.push(listen(model, { "change:acts": show, "change:pace": show }));
-    this.#stops.push(listen(model, { "change:measuring": show }));
+    this.#stops.push(listen(model, { "change:measuring": show, "change:splits": show }));
     this.#stops.push(() => tools.remove());
+    this.#seeViews(el, show);
     show();
+  }
+
+  /**
+   * Know which views there are, and name the one that keys act on.
+   * @param {HTMLElement} el
+   * @param {() => void} show renews the buttons
+   */
+  #seeViews(el, show) {
+    const [scene, model] = [this.#scene, this.#model];
+    const labels = new Labels(scene, this.#stage);
+    const said = element("p", { class: "ikteach-unseen", role: "status" });
+    el.append(said);
+    const chosen = () => {
+      model.set("view", scene.chosen);
+      model.save_changes();
+      said.textContent = `Keys act on the view ${scene.pane.title}.`;
+      show();
+    };
+    this.#stops.push(
+      listen(scene.model, { chosen }),
+      listen(model, { "change:panes": show }),
+      () => labels.end(),
+      () => said.remove(),
+    );
   }
 
   end() {
@@ -76,6 +109,8 @@ export class Looking {
     else if (key === "p") this.#save();
     else if (key === "d" && this.#model.get("measures")) this.#measure();
     else if (key === "0") this.#goBack();
+    else if (key === "v" && this.#model.get("splits")) this.#model.send({ act: "v" });
+    else if (key === "n" && this.#scene.panes.length > 1) this.#goOn();
     else if (key in this.#model.get("acts")) this.#model.send({ act: key });
     else return false;
     return true;
@@ -86,13 +121,18 @@ export class Looking {
     const pass = (/** @type {Event} */ event) => {
       if (document.activeElement !== this.#stage) event.stopPropagation();
     };
+    const here = (/** @type {MouseEvent} */ event) =>
+      this.#scene.choose(this.#scene.at(pixelOf(this.#stage, event)));
     const wheel = (/** @type {WheelEvent} */ event) => {
-      if (!event.ctrlKey && !event.metaKey) pass(event);
+      if (document.activeElement === this.#stage || event.ctrlKey || event.metaKey) here(event);
+      else event.stopPropagation();
     };
     const wheels = { wheel, mousewheel: wheel, MozMousePixelScroll: wheel };
     // The camera keeps a mouse from choosing what it presses; a finger may only want to scroll.
     const pointerdown = (/** @type {PointerEvent} */ event) => {
       if (event.pointerType !== "touch") this.#stage.focus({ preventScroll: true });
+      here(event);
+      this.#scene.pressed = true;
     };
     return { ...wheels, pointerdown, touchstart: pass, touchmove: pass };
   }
@@ -106,8 +146,12 @@ export class Looking {
   };
 
   #goBack() {
-    for (const controls of this.#scene.controls) controls.update_controlled();
+    this.#scene.controls.update_controlled();
     this.#model.send({ act: "0" });
+  }
+
+  #goOn() {
+    this.#scene.choose((this.#scene.chosen + 1) % this.#scene.panes.length);
   }
 
   #measure() {
@@ -142,7 +186,7 @@ export class Looking {
   /** The picture is there only just after it was drawn. */
   #save() {
     const stop = listen(this.#scene.model, {
-      afterRender: () => {
+      afterViews: () => {
         stop();
         const canvas = this.#stage.querySelector("canvas");
         const href = canvas?.toDataURL("image/png");
@@ -179,9 +223,18 @@ export class Looking {
     }
     if ("l" in model.get("acts")) buttons.push(this.#button("l", "Link to this"));
     if (pace) buttons.push(this.#button("s", `Time ${pace}`));
+    const views = model.get("panes").length;
+    if (model.get("splits")) buttons.push(this.#button("v", `Views: ${views}`));
+    if (views > 1) buttons.push(this.#button("n", `View: ${this.#scene.pane.name}`));
     const own = Object.entries(OWN).map(([key, [, does]]) => [key, does]);
-    const keys = [...acts, ...own, ...(model.get("measures") ? [["d", MEASURE]] : [])];
-    return [...buttons, help(keys)];
+    const more = model.get("splits")
+      ? [
+          ["v", VIEWS],
+          ["n", NEXT],
+        ]
+      : [];
+    if (model.get("measures")) more.unshift(["d", MEASURE]);
+    return [...buttons, help([...acts, ...own, ...more])];
   }
 
   /**
@@ -200,7 +253,7 @@ export class Looking {
 const MEASURE = "shows the distances in large figures";
 const CAMERA = [
   ["click", "chooses the picture: then the wheel zooms; with Ctrl it always does"],
-  ["drag", "turns the camera"],
+  ["drag", "turns the camera of the view under the pointer"],
   ["arrows", "turn the camera"],
   ["+ −", "go nearer and farther, as Page Up and Page Down do"],
 ];

@@ -1,12 +1,16 @@
-// Mouse and touch: a target is dragged in the plane that faces the camera.
+// Mouse and touch: a target is dragged in the plane that faces the camera. Where that is the plane
+// of two axes of the world, as seen from the front, the side or the top, the third coordinate stays.
+
+import { pixelOf } from "./scene.js";
 
 /** @import { Scene } from "./scene.js" */
 
 /** @type {Record<string, number>} */
 const NEAR = { mouse: 18, pen: 22, touch: 32 }; // [pixels] from a target's middle that still hit it
+const ALONG = 0.9998; // cosine of the angle [1.1°] up to which a camera looks along an axis
 
 export class Picking {
-  /** @type {{ node: number, depth: number, grip: Vector3, pointer: number, begun: boolean } | null} */
+  /** @type {{ node: number, depth: number, grip: Vector3, pointer: number, begun: boolean, start: Vector3 } | null} */
   #drag = null;
   #scene;
   #stage;
@@ -36,15 +40,17 @@ export class Picking {
   /** @param {PointerEvent} event */
   down(event) {
     if (event.button !== 0 || this.#drag) return;
+    this.#scene.choose(this.#scene.at(pixelOf(this.#stage, event)));
     const node = this.#hit(event);
     if (node < 0) return;
     event.preventDefault(); // no mousedown for the camera
     event.stopPropagation();
-    this.#turning(false);
+    this.#scene.held = true;
     const at = this.#handles.where(node);
     const depth = at.clone().project(this.#scene.camera).z;
+    const start = at.clone();
     const grip = at.sub(this.#under(event, depth)); // it does not jump to the pointer
-    this.#drag = { node, depth, grip, pointer: event.pointerId, begun: false };
+    this.#drag = { node, depth, grip, pointer: event.pointerId, begun: false, start };
     this.#stage.setPointerCapture(event.pointerId);
     this.#stage.focus({ preventScroll: true });
     this.#handles.choose(node);
@@ -57,7 +63,10 @@ export class Picking {
       this.#stage.style.cursor = event.buttons === 0 && this.#hit(event) >= 0 ? "grab" : "";
     } else if (event.pointerId === drag.pointer) {
       event.stopPropagation();
-      this.#handles.move(drag.node, this.#under(event, drag.depth).add(drag.grip), !drag.begun);
+      const at = this.#under(event, drag.depth).add(drag.grip).toArray();
+      const back = this.#scene.camera.matrixWorld.elements.slice(8, 11);
+      const [x, y, z] = inPlane(back, at, drag.start.toArray());
+      this.#handles.move(drag.node, this.#scene.vector(x, y, z), !drag.begun);
       drag.begun = true;
     }
   }
@@ -71,12 +80,7 @@ export class Picking {
   release() {
     if (!this.#drag) return;
     this.#drag = null;
-    this.#turning(true);
-  }
-
-  /** @param {boolean} enabled whether dragging turns the camera */
-  #turning(enabled) {
-    for (const controls of this.#scene.controls) controls.obj.enabled = enabled;
+    this.#scene.held = false;
   }
 
   /**
@@ -84,9 +88,10 @@ export class Picking {
    * @param {PointerEvent} event
    */
   #hit(event) {
-    const { camera } = this.#scene;
-    const seen = this.#handles.nodes.map((_, node) => this.#handles.where(node).project(camera));
-    return nearest(seen, this.#pixel(event), NEAR[event.pointerType] ?? NEAR.mouse);
+    const pixel = pixelOf(this.#stage, event);
+    const pane = this.#scene.panes[this.#scene.at(pixel)];
+    const seen = this.#handles.nodes.map((_, i) => this.#handles.where(i).project(pane.camera));
+    return nearest(seen, pane.pixel(pixel), NEAR[event.pointerType] ?? NEAR.mouse);
   }
 
   /**
@@ -95,17 +100,22 @@ export class Picking {
    * @param {number} depth
    */
   #under(event, depth) {
-    const [x, y, width, height] = this.#pixel(event);
+    const [x, y, width, height] = this.#scene.pane.pixel(pixelOf(this.#stage, event));
     const point = this.#scene.vector((2 * x) / width - 1, 1 - (2 * y) / height, depth);
     return point.unproject(this.#scene.camera);
   }
+}
 
-  /** @param {PointerEvent} event */
-  #pixel(event) {
-    const picture = this.#stage.querySelector("canvas, img") ?? this.#stage;
-    const box = picture.getBoundingClientRect();
-    return [event.clientX - box.left, event.clientY - box.top, box.width, box.height];
-  }
+/**
+ * A place to which something is dragged, in the plane in which the drag began if the camera looks
+ * along an axis of the world.
+ * @param {number[]} back from what the camera looks at to it, of length 1
+ * @param {number[]} at
+ * @param {number[]} start
+ */
+export function inPlane(back, at, start) {
+  const axis = back.findIndex((part) => Math.abs(part) > ALONG);
+  return at.map((part, i) => (i === axis ? start[i] : part));
 }
 
 /**

@@ -13,16 +13,17 @@ import pythreejs as three
 from ikteach.arrays import Array, finite
 from ikteach.body import Effectors, Tree
 from ikteach.names import unknown
-from ikteach.view.raster.drawing import Drawing
+from ikteach.view.raster.split import Split
 from ikteach.view.raster.still import png
 from ikteach.view.stage.basics import BASICS, TargetMarks
 from ikteach.view.stage.colours import effector_colour, paper
 from ikteach.view.stage.layers import LAYERS
-from ikteach.view.stage.stage import FIELD, About, Now, Stage
+from ikteach.view.stage.stage import About, Now, Stage
+from ikteach.view.stage.views import needed, views_of
 from ikteach.view.webgl import objects
-from ikteach.view.webgl.cameras import Cameras
 from ikteach.view.webgl.driver import Driver
 from ikteach.view.webgl.layers import LayerObjects
+from ikteach.view.webgl.views import Views
 from ikteach.view.widgets import doors
 from ikteach.view.widgets.closing import Living
 from ikteach.view.widgets.lacking import Note
@@ -76,10 +77,17 @@ class Scene(Living):
         (marks,) = (one for one in self._basics if isinstance(one.layer, TargetMarks))
         self.targets = marks.by_row
         self._furnish(size)
-        self._drawing = Drawing(stage, size)
+        self._split = Split(stage, size)
         self.look_from(stage.side)
         colours = [[name, effector_colour(i)] for i, name in enumerate(effectors.names)]
-        self.driver = Driver(self.renderer, description=stage.words, effectors=colours)
+        self.driver = Driver(
+            self.renderer,
+            description=stage.words,
+            effectors=colours,
+            panes=self._views.panes,
+            needed=needed(stage, size[0] / size[1]),
+            splits=len(views_of(stage)) > 1,
+        )
         self.driver.on_page, self.driver.on_act = self._greet, self._perform
         self.driver.observe(lambda _: self._send(), "measuring")
         self.driver.observe(self._follow_page, "dark")
@@ -93,23 +101,14 @@ class Scene(Living):
         self.widget.add_class("ikteach-scene")
 
     def _furnish(self, size: tuple[int, int]) -> None:
-        """Make scene, camera and renderer."""
-        width, height = size
-        aspect = width / height
-        self.camera = three.PerspectiveCamera(fov=FIELD, aspect=aspect)
+        """Make scene, cameras and renderer."""
         things = [thing for shown in self._basics for thing in shown.things]
         self.scene = three.Scene(
             children=[*things, *objects.lights()], background=paper(self._dark).back
         )
-        self.renderer = three.Renderer(
-            scene=self.scene,
-            camera=self.camera,
-            antialias=False,
-            width=width,
-            height=height,
-            controls=[three.OrbitControls(controlling=self.camera)],
-        )
-        self.cameras = Cameras(self.renderer, self.stage, aspect)
+        self._views = Views(self.stage, self.scene, size)
+        self.renderer, self.cameras = self._views.renderer, self._views.free
+        self.camera = self.cameras.perspective
 
     @property
     def layers(self) -> dict[str, bool]:
@@ -136,11 +135,24 @@ class Scene(Living):
     def look_from(self, side: str) -> None:
         """Put the camera to one of `CAMERAS`, or to "plane".
 
-        "plane" looks along the normal of the figure's plane.
+        "plane" looks along the normal of the figure's plane. Of several views it is the first.
         """
-        self.cameras.look_from(side)
-        self._drawing.look_from(side)
-        self._side = side
+        self._views.look_from(side)
+        self._split.look_from(side)
+
+    @property
+    def views(self) -> int:
+        """Tell how many views there are; may be set.
+
+        1 is the free one, 2 have the side beside it, 4 front, side and top. A planar figure has
+        one. ValueError for another number.
+        """
+        return self._views.count
+
+    @views.setter
+    def views(self, count: int) -> None:
+        self._views.count = self._split.count = count
+        self.driver.panes = self._views.panes
 
     @property
     def dark(self) -> bool:
@@ -181,10 +193,11 @@ class Scene(Living):
     def offer(self, acts: Mapping[str, tuple[str, Callable[[], object]]]) -> None:
         """Have keys at the picture do this: {key: (what it does, action)}.
 
-        "0" puts the camera back to its side, unless it is given.
+        "0" puts the camera of the chosen view back to its side, and "v" shows one view, two or
+        four.
         """
         self._acts = {key: act for key, (_, act) in acts.items()}
-        self.driver.acts = {key: words for key, (words, _) in acts.items() if key != "0"}
+        self.driver.acts = {key: words for key, (words, _) in acts.items()}
 
     def mount(self, *more: widgets.Widget) -> None:
         """Have the page show these widgets under the picture."""
@@ -198,7 +211,7 @@ class Scene(Living):
         if self.now is None:
             return Still(b"", self.driver.description)
         layers = [shown.layer for shown in self._drawn()]
-        return Still(png(self._drawing, layers, self.now, self._dark), self.driver.description)
+        return Still(png(self._split, layers, self.now, self._dark), self.driver.description)
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
         """Show the live widget, and beside it a still for places without a kernel."""
@@ -206,8 +219,11 @@ class Scene(Living):
 
     def _perform(self, key: str) -> None:
         """Do what a key at the picture does; a key that does nothing may come late."""
-        usual = {"0": lambda: self.look_from(self._side)}
-        (usual | self._acts).get(key, lambda: None)()
+        usual = {"0": lambda: self._views.put_back(self.driver.view), "v": self._split_more}
+        (self._acts | usual).get(key, lambda: None)()
+
+    def _split_more(self) -> None:
+        self.views = self._views.more
 
     def _greet(self, new: bool) -> None:
         """Show a page that begins to look what was shown last."""

@@ -16,9 +16,10 @@ from ikteach.solvers.singularity import ellipsoid
 from ikteach.view import Scene, StillScene
 from ikteach.view.stage.forms import Ball
 from ikteach.view.stage.layer import Layer, upright
-from ikteach.view.stage.layers import LAYERS
-from ikteach.view.stage.stage import CAMERAS, View, picture_axes
+from ikteach.view.stage.layers import BONES, LAYERS
+from ikteach.view.stage.stage import CAMERAS, Stage, View, picture_axes
 from ikteach.view.stage.trails import Prints, Trail
+from ikteach.view.stage.views import VIEWS, tiles
 from ikteach.view.webgl.cameras import looking, quaternion
 
 TREE, EFFECTORS = figures.human()
@@ -29,6 +30,7 @@ TARGETS = HERE + [0.1, 0.05, 0]
 J = jacobian(TREE, FRAMES, EFFECTORS)[6:9]
 DRAWN = {
     "effector": 2, "columns": J, "ellipsoid": ellipsoid(J), "reach": [((0.2, 0.4, 0), 0.1, 0.7)],
+    "skeletons": [[[(0, 0, 0), (0, 0.5, 0)], [(0, 0.5, 0), (0.4, 0.5, 0)]]],
 }  # fmt: skip
 
 
@@ -280,6 +282,7 @@ def test_closing_frees_every_widget(make):
         scene.switch(layer)
     scene.dark = True
     scene.cameras.orthographic = True
+    scene.views = 4
     scene.show(THETA, TARGETS, **DRAWN)
     scene.still()
     assert len(_instances) > len(before) + 60
@@ -352,6 +355,90 @@ def test_turning_keeps_its_distance(make):
     scene.cameras.orthographic = False
     assert scene.cameras.angles == pytest.approx((-40, 10))
     assert scene.cameras.distance == pytest.approx(3)
+
+
+@pytest.mark.parametrize("count", VIEWS)
+def test_several_views_look_from_their_sides(make, count):
+    scene = make()
+    scene.views = count
+    names = [pane["name"] for pane in scene.driver.panes]
+    cameras = [one.controlling for one in scene.renderer.controls]
+    assert names == list(VIEWS[count])
+    assert cameras[0] is scene.renderer.camera is scene.camera
+    centre = scene.stage.extent.centre
+    for name, camera in zip(names[1:], cameras[1:], strict=True):
+        back = np.array(camera.position) - centre
+        assert np.cross(back, CAMERAS[name]) == pytest.approx(np.zeros(3), abs=1e-9)
+        assert back @ CAMERAS[name] > 0
+        assert camera in scene.scene.children  # which has it drawn again when it turns
+    scene.views = 1
+    assert len(scene.renderer.controls) == len(scene.driver.panes) == 1
+
+
+def test_a_recorded_skeleton_has_its_longest_bones_and_hangs_on_its_figure():
+    stage = Stage(TREE, EFFECTORS, ["a", "b"])
+    layer = LAYERS["recorded skeleton"](stage)
+    start = np.random.default_rng(0).normal(size=(BONES + 9, 3))
+    length = np.arange(BONES + 9) / 100  # the first has none
+    bones = np.stack([start, start + length[:, None] * [0, 1, 0]], axis=1)
+    now = stage.now(THETA, TARGETS, skeletons=[None, bones])
+    rows = layer.place(now).reshape(2, BONES, 3, 4)
+    assert np.isnan(rows[0]).all()
+    along = rows[1, :, :, 1]
+    assert sorted(along[:, 1]) == pytest.approx(length[-BONES:])
+    assert rows[1, 0, :, 3] == pytest.approx(start[-1] + stage.places[1])
+    few = layer.place(stage.now(THETA, TARGETS, skeletons=[bones[:3]])).reshape(2, BONES, 3, 4)
+    assert np.isfinite(few[0, :, 0, 0]).sum() == 2
+    wrong = {"shape": [bones[0]], "finite": [bones * np.nan], "2 figures": [None] * 3}
+    for words, skeletons in wrong.items():
+        with pytest.raises(ValueError, match=words):
+            stage.now(THETA, TARGETS, skeletons=skeletons)
+
+
+def test_a_key_goes_through_the_numbers_of_views_and_one_puts_a_view_back(make):
+    scene, seen = make(), []
+    for _ in range(4):
+        seen.append(scene.views)
+        scene.driver.on_act("v")
+    assert seen == [1, 2, 4, 1]
+    scene.views, scene.driver.view = 4, 2
+    side = scene.renderer.controls[2].controlling
+    was, free = side.position, scene.camera.position
+    side.position, scene.camera.position = (1.0, 2, 3), (3.0, 2, 1)
+    scene.driver.on_act("0")
+    assert side.position == was
+    assert scene.camera.position == (3, 2, 1)
+    scene.driver.view = 0
+    scene.driver.on_act("0")
+    assert scene.camera.position == free
+
+
+def test_there_are_one_two_or_four_views_and_of_a_plane_one(make):
+    scene = make()
+    for count in (3, 0, True, "2"):
+        with pytest.raises(ValueError, match="number of views"):
+            scene.views = count
+    assert scene.views == 1
+    plane = make(figure=figures.planar_arm(3))
+    assert not plane.driver.splits
+    with pytest.raises(ValueError, match="number of views"):
+        plane.views = 2
+
+
+@pytest.mark.parametrize("kind", [Scene, StillScene])
+@pytest.mark.parametrize("count", VIEWS)
+def test_a_still_has_every_view(make, kind, count):
+    scene = make(kind)
+    scene.views = count
+    scene.show(THETA, TARGETS)
+    picture = scene.png if kind is StillScene else scene.still().png
+    image = np.asarray(Image.open(io.BytesIO(picture)).convert("RGB")).astype(int)
+    assert image.shape == (480, 540, 3)
+    columns, rows = tiles(count, 540 / 480, 1.0)
+    shirt = abs(image - [95, 143, 180]).max(axis=-1) < 60
+    parts = [part.sum() for row in np.split(shirt, rows) for part in np.split(row, columns, axis=1)]
+    assert len(parts) == count
+    assert min(parts) > 200
 
 
 def test_a_trail_leaves_a_mark_each_gap_and_forgets_the_oldest():
