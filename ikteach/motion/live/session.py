@@ -65,9 +65,10 @@ class Session(Play):
         what = {n: value for n, value in new.items() if n not in old or value != old[n]}
         if not what and isinstance(gait, Gait):
             return
+        going_on = None
         if not what or "name" in what or "curve" in what or set(new) != set(old):
-            what = {"motion": gait.name}  # another, or other data
-        self._change("gait", what, gait=gait, course=course)
+            what, going_on = {"motion": gait.name}, False  # another, or other data
+        self._change("gait", what, going_on=going_on, gait=gait, course=course)
 
     def change(self, **parameters: Any) -> None:
         """Give the gait other parameters.

@@ -22,6 +22,7 @@ from ikteach.body import Tree
 from ikteach.body.figures import BALL, GAZE, HEEL
 from ikteach.checks import numbers, shown
 from ikteach.motion.path import NamedMotion
+from ikteach.motion.paths.stroke import rounded
 
 NAMES = ("pelvis", "heel.l", "ball.l", "heel.r", "ball.r", "pelvis.up", "pelvis.ahead")
 SIDES = (("l", 1, 0.0), ("r", -1, 0.5))  # name, where x is, cycles behind the left foot
@@ -316,8 +317,5 @@ def tilts(duty: float, strike: float, push_off: float) -> Array:
     at = [*(duty * u for u in stance), *(duty + (1 - duty) * u for u in swing)]
     u = np.arange(SAMPLES) / SAMPLES
     straight = np.interp(u, at, [*stance.values(), *swing.values()], period=1)
-    f = np.fft.rfftfreq(SAMPLES, 1 / SAMPLES)
-    smooth = np.fft.irfft(
-        np.fft.rfft(straight) * np.exp(-0.5 * (2 * pi * f * SMOOTH) ** 2), SAMPLES
-    )
+    smooth = rounded(straight, SMOOTH)
     return frozen([*smooth, smooth[0]])

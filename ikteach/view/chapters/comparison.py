@@ -24,7 +24,7 @@ from ikteach.view.live.panel import Does, Panel, button, choice, slider
 from ikteach.view.live.strips import SECONDS, Strips
 from ikteach.view.stage.colours import effector_colour
 from ikteach.view.stage.lengths import Lengths
-from ikteach.view.tools.session_panels import motions, other_motion
+from ikteach.view.tools.session_panels import WRITTEN, as_set, motions, settle_sliders, takes
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import doors
 from ikteach.view.widgets.layout import Arranged
@@ -66,7 +66,8 @@ class Race(Live):
         session = Session(methods=methods, **options)
         super().__init__(session, _scene(session), slot, Strips(session))
         self._table = Prose()
-        self._first = session.gait
+        known = motions(session)
+        self._known = {name: make for name, make in known.items() if name not in WRITTEN}
         self.panel = self._panel(degrees)
         self.controls = self.panel.controls
         step, reset = button("Step"), button("Reset")
@@ -78,6 +79,7 @@ class Race(Live):
             self.status,
             self.strips,
         ]
+        settle_sliders(self.panel, session)
         self._bound()
         self.report()
 
@@ -86,7 +88,7 @@ class Race(Live):
         speed = slider("speed ω [rad/s]", session.gait.speed, 0.0, 20.0, 0.1)
         row = {  # side by side where there is room, so that figures and curves are seen with them
             "caps": Does(choice("caps", [EQUAL, OWN]), self._bound),
-            "motion": Does(choice("motion", motions(session), session.gait.name), self._move),
+            "motion": Does(choice("motion", [*self._known], session.gait.name), self._move),
             "degrees": Does(slider("equal cap [° per step]", degrees, 1.0, 45.0, 0.5), self._bound),
             "speed": Does(speed, lambda speed: session.change(speed=speed)),
         }
@@ -131,8 +133,10 @@ class Race(Live):
         self._table.value = session_table(self.session) + whose
 
     def _move(self, motion: str) -> None:
-        self.session.gait = other_motion(self.session, motion, self._first)
-        self.panel.put(speed=self.session.gait.speed)
+        self.session.gait = as_set(self._known[motion](), self.session)
+        if takes(self.session.gait, "speed"):
+            self.panel.put(speed=self.session.gait.speed)
+        settle_sliders(self.panel, self.session)
 
     def _bound(self, _: Any = None) -> None:
         session, values = self.session, self.values
