@@ -62,7 +62,7 @@ def anchored(tree: Tree) -> Tree:
 
 
 def carried_alone(figure: Figure, effector: str) -> Figure:
-    """Give a figure's one effector, carried by a body that stands where it is.
+    """Give one effector of a figure, on a body that stands.
 
     LookupError for an unknown name, ValueError for a direction.
     """

@@ -35,9 +35,9 @@ PEN = "pen (Enter sets a point, Backspace takes one back)"
 class DrawingPad(Cell):
     """A plane on which a closed curve is drawn.
 
-    It lies over the outline of a body. By mouse, pen or finger: a stroke is closed, smoothed, and at once the path of an effector. By
-    keys: arrows move the pen, Enter sets a point, Backspace takes it back, and the button sends the
-    effector along them. A click sets a point, too.
+    It lies over the outline of a body. By mouse, pen or finger: a stroke is closed, smoothed, and
+    at once the path of an effector. By keys: arrows move the pen, Enter sets a point, Backspace
+    takes it back, and the button sends the effector along them. A click sets a point, too.
 
     session   whose targets go along the curve; one of a human, if none is given
     effector  that goes along it at first; the last, a hand of the human, if none is named
@@ -196,7 +196,7 @@ class DrawingPad(Cell):
         self.session.by_hand, self.session.gait = False, motion
 
     def agree(self) -> None:
-        """Show the curve of the session, should it go along another than the last."""
+        """Show the session's curve, if it is another one."""
         gait, mine = self.session.gait, self.motion
         if not isinstance(gait, Recorded) or gait.name != DRAWN:
             return
