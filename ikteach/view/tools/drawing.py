@@ -219,7 +219,7 @@ class DrawingPad(Cell):
         self.draw()
 
     def draw(self) -> None:
-        """Draw the outline, the curve, and where it cannot be reached."""
+        """Draw outline and curve, and what is out of reach."""
         lines = [Stroke(self.seen(bone), GREY, width=3.0) for bone in self._bones()]
         at, size = self.seen(self.points), 0.02 * self.plane.half
         for bad, run in groupby(range(len(at)), lambda i: bool(self._far[i])):
