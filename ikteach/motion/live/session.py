@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ikteach.arrays import ArrayLike, frozen
-from ikteach.checks import numbers
+from ikteach.checks import count, numbers
 from ikteach.motion.checks import checked, solver_of
 from ikteach.motion.gait import Gait
 from ikteach.motion.live.log import Event
@@ -141,6 +141,16 @@ class Session(Play):
             known = self._known(method)
             self._try(known, self.methods[known], {**self.options, "max_step": cap})
         self._change("caps", dict(caps), caps=dict(caps))
+
+    @property
+    def iterations(self) -> int:
+        """How many steps a tick takes."""
+        return self._settings.iterations
+
+    @iterations.setter
+    def iterations(self, iterations: int) -> None:
+        if (steps := count("iterations", iterations)) != self.iterations:
+            self._change("iterations", {"iterations": steps}, iterations=steps)
 
     @property
     def by_hand(self) -> bool:

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from ikteach.markup import Markup, as_label
 from ikteach.motion import BUSS_CAPS, Track
-from ikteach.motion.gait import stature
+from ikteach.motion.gait import Gait, stature
 from ikteach.motion.live.session import Session
 from ikteach.motion.live.settings import SESSION, check_options
 from ikteach.motion.methods import Methods
@@ -23,7 +23,7 @@ from ikteach.view.live.live import Live
 from ikteach.view.live.panel import Does, Panel, button, choice, slider
 from ikteach.view.live.strips import SECONDS, Strips
 from ikteach.view.stage.colours import effector_colour
-from ikteach.view.stage.lengths import Lengths
+from ikteach.view.stage.lengths import Lengths, counted
 from ikteach.view.tools.session_panels import WRITTEN, as_set, motions, settle_sliders, takes
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import doors
@@ -66,8 +66,9 @@ class Race(Live):
         session = Session(methods=methods, **options)
         super().__init__(session, _scene(session), slot, Strips(session))
         self._table = Prose()
-        known = motions(session)
-        self._known = {name: make for name, make in known.items() if name not in WRITTEN}
+        sines = isinstance(session.gait, Gait)  # a race of the thesis is run by its own motions
+        left_out = WRITTEN if sines else ()
+        self._known = {name: m for name, m in motions(session).items() if name not in left_out}
         self.panel = self._panel(degrees)
         self.controls = self.panel.controls
         step, reset = button("Step"), button("Reset")
@@ -111,7 +112,8 @@ class Race(Live):
         far = ", ".join(f"{name} {length(run.error.mean())}" for name, run in tracks.items())
         who = self.scene.stage.crowd
         caps = self.values["caps"]
-        return f"{who}, {session.gait.name}, {caps}. Mean distance: {far or 'no tick yet'}."
+        said = f"{who}, {session.gait.name}, {caps}. Mean distance: {far or 'no tick yet'}."
+        return said + counted(session.effectors)
 
     def draw(self) -> None:
         """Draw the session's state in the scene."""

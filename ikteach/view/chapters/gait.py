@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from ikteach.markup import Markup
 from ikteach.motion.gait import MOTIONS, WOUND, Gait
 from ikteach.motion.live.session import Session
@@ -13,7 +15,7 @@ from ikteach.study import distances
 from ikteach.view.live.live import Live
 from ikteach.view.live.panel import Act, Does, Panel, button, choice, dropdown, tick_box
 from ikteach.view.live.strips import SECONDS, Strips
-from ikteach.view.stage.lengths import Lengths
+from ikteach.view.stage.lengths import Lengths, counted, misses, told
 from ikteach.view.stage.stage import sides_of
 from ikteach.view.tools.session_panels import (
     SLIDERS,
@@ -155,11 +157,7 @@ def session_words(session: Session) -> str:
 
     They name its motion and its method, and say how well it follows.
     """
-    length = Lengths.of(session.tree, session.effectors)
-    far = ", ".join(
-        f"{name} {length(d)}"
-        for name, d in zip(session.effectors.names, session.error, strict=True)
-    )
+    far = ", ".join(told(session.tree, session.effectors, session.error))
     wounded = "wounded, " if session.gait.wound else ""
     who = "human" if isinstance(session.gait, Gait) else "figure"
     does = f"{session.gait.name} by" if not session.by_hand else "moved by hand, solved by"
@@ -175,9 +173,13 @@ def session_table(session: Session, shown: str | None = None) -> Markup:
     if not tracks:
         return Markup("<p>No tick yet: the table fills when the figure moves.</p>")
     frame = distances(tracks).rename(index={shown: f"{shown} (shown)"})
-    length = Lengths.of(session.tree, session.effectors)
-    frame.loc[:, [*session.effectors.names, "worst"]] *= 0.01 / length.metres
+    effectors, length = session.effectors, Lengths.of(session.tree, session.effectors)
+    off = np.array([misses(effectors, run.error).mean(axis=0) for run in tracks.values()])
+    directions = frame.columns[: len(effectors)][effectors.w == 0]
+    frame.loc[:, frame.columns.difference([*directions, "jitter", "held"])] *= 0.01 / length.metres
+    frame.loc[:, directions] = np.degrees(off[:, effectors.w == 0])
+    frame = frame.rename(columns={name: f"{name} [°]" for name in directions})
     return Markup(
         "<p>Distance to target in {}, mean of the last 10 s; worst of them; jitter "
-        "(mean ‖Δ²θ‖) in degrees; joints held at limits, on average.</p>{}"
-    ).format(length.name, prose.table(frame, "{:.2f}"))
+        "(mean ‖Δ²θ‖) in degrees; joints held at limits, on average.{}</p>{}"
+    ).format(length.name, counted(effectors), prose.table(frame, "{:.2f}"))
