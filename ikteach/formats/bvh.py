@@ -55,7 +55,8 @@ def read_bvh(source: str | Path, *, scale: float = 1.0) -> Recording:
     Effectors are the End Sites in the order of the file, and joints from which nothing hangs and
     that lack one. A joint without channels is folded into its children. A position channel adds to
     the joint's OFFSET, where Blender puts it in its place: the two differ only where a joint has
-    both. ValueError names the line that is wrong; OSError if there is no such file.
+    both. A file whose position channels repeat the OFFSETs of its joints means the latter, and is
+    read so. ValueError names the line that is wrong; OSError if there is no such file.
     """
     if not (scale := number("scale", scale)):
         raise ValueError("scale must be more than 0")
@@ -66,7 +67,8 @@ def read_bvh(source: str | Path, *, scale: float = 1.0) -> Recording:
         raise ValueError("BVH: no joint has channels, so nothing moves")
     frames, dt = _frame_lines(lines)
     units = np.array([scale if row.slide else radians(1) for row in rows])
-    theta = _table(lines, frames, len(rows))[:, columns] * units
+    table = _table(lines, frames, len(rows))
+    theta = (table - _repeated(nodes, table))[:, columns] * units
     tree = Tree.of(rows)
     return Recording(tree, Effectors.of(tree, ends), theta, dt)
 
@@ -115,6 +117,8 @@ class Line(NamedTuple):
         except ValueError:
             values = None
         if values is None or "_" in self.text:  # which Python takes for part of a number
+            if re.search(r"\d,\d", self.text):
+                raise self.wrong("numbers have a decimal point, and no comma")
             raise self.wrong("there is a word where a number should be")
         if not np.isfinite(values).all():
             raise self.wrong("a number is not finite")
@@ -316,6 +320,24 @@ def _table(lines: Lines, frames: int, columns: int) -> Array:
         said = f"{frames} frames are announced, and the file ends after {len(rows)}"
         raise ValueError(f"BVH, line {lines.number}: {said}")
     return np.array(rows).reshape(frames, columns)
+
+
+def _repeated(nodes: list[Node], table: Array) -> Array:
+    """Find what position channels repeat of the OFFSETs, by column (c,) [units of the file].
+
+    They do if they are nearer to the OFFSETs than to nothing, of all joints below a ROOT together.
+    """
+    offsets, places = np.zeros(table.shape[1]), np.zeros(table.shape[1], dtype=bool)
+    for node in nodes:
+        for channel in node.channels if node.above is not None else ():
+            if not channel.turns and node.offset is not None:
+                offsets[channel.column] = node.offset["xyz".index(channel.axis)]
+                places[channel.column] = True
+    if not len(table) or not offsets.any():
+        return np.zeros(table.shape[1])
+    usual = np.where(places, np.median(table, axis=0), 0)
+    repeat = np.linalg.norm(usual - offsets) < np.linalg.norm(usual)
+    return offsets * repeat
 
 
 class Run(Protocol):

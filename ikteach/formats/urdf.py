@@ -16,6 +16,7 @@ from collections.abc import Iterator, Mapping
 from heapq import heappop, heappush
 from pathlib import Path
 from typing import NamedTuple
+from xml.parsers import expat
 
 import numpy as np
 
@@ -27,6 +28,7 @@ from ikteach.names import unknown
 
 LARGEST_URDF = 16 * 2**20  # bytes of a file
 ARM = Path(__file__).parents[1] / "data" / "arm7.urdf"  # an arm of seven hinges
+LINE = " line"  # where an element stands in the file: no attribute has a blank in its name
 MOVES = {"revolute", "continuous", "prismatic"}
 
 
@@ -91,6 +93,10 @@ class Edge(NamedTuple):
     parent: str
     child: str
 
+    def wrong(self, why: str) -> ValueError:
+        """Say what is wrong with this joint, and where."""
+        return wrong(self.element, f"the joint {shown(self.name)} {why}")
+
 
 def read_urdf(source: str | Path) -> Robot:
     """Read a URDF file, or its text, as a body.
@@ -98,9 +104,9 @@ def read_urdf(source: str | Path) -> Robot:
     source  a path, or the text itself, which begins with "<"
 
     A joint without limits is endless; where one of them is missing it is 0, as URDF has it. What
-    does not move (inertia, looks, transmissions) is passed over. ValueError names the joint or link
-    that is wrong: joints must be fixed, revolute, continuous or prismatic. OSError if there is no
-    such file.
+    does not move (inertia, looks, transmissions) is passed over. ValueError names the line, and the
+    joint or link that is wrong: joints must be fixed, revolute, continuous or prismatic. OSError if
+    there is no such file.
     """
     robot = _root(content(source, LARGEST_URDF, "URDF"))
     edges = list(_edges(robot))
@@ -118,7 +124,8 @@ def read_urdf(source: str | Path) -> Robot:
         for place in below.get(edge.child, []):
             heappush(ready, place)
     if lost := [edge.name for edge in edges if edge.child not in links]:
-        raise ValueError(f"URDF: the joint {shown(lost[0])} hangs from itself in a circle")
+        first = next(edge for edge in edges if edge.name == lost[0])
+        raise first.wrong("hangs from itself in a circle")
     if not 0 < len(rows) <= MOST_JOINTS:
         raise ValueError(f"URDF: {len(rows)} joints move, and it must be from 1 to {MOST_JOINTS}")
     tree = Tree.of(rows)
@@ -133,21 +140,47 @@ def read_urdf(source: str | Path) -> Robot:
 def _root(data: bytes) -> ET.Element:
     """Parse the <robot> element, its tags without namespaces."""
     wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
-    text = data.decode("utf-16" if wide else "utf-8-sig", errors="replace").lstrip()
-    if "<!ENTITY" in text:
-        raise ValueError("URDF: entities are not read")  # they can grow without end
-    try:
-        root = ET.fromstring(text)
-    except ET.ParseError as error:
-        raise ValueError(f"URDF: this is no XML ({error})") from None
+    root = _parsed(data.decode("utf-16" if wide else "utf-8-sig", errors="replace"))
     for element in root.iter():
         space, _, tag = element.tag.rpartition("}")
-        if "xacro" in space:
-            raise ValueError(f"URDF: <xacro:{tag[:40]}> is left: let xacro expand this file first")
+        if "xacro" in space or tag.startswith("xacro:"):
+            tag = tag.removeprefix("xacro:")[:40]
+            raise wrong(element, f"<xacro:{tag}> is left: let xacro expand this file first")
         element.tag = tag
     if root.tag != "robot":
-        raise ValueError(f"URDF: the root is <{root.tag[:40]}>, and should be <robot>")
+        raise wrong(root, f"the root is <{root.tag[:40]}>, and should be <robot>")
     return root
+
+
+def _parsed(text: str) -> ET.Element:
+    """Parse XML into elements that know their lines; entities are refused."""
+    spaced = "xmlns" in text  # else xacro's prefix, which nothing then declares, is part of a name
+    parser, builder = (
+        expat.ParserCreate(namespace_separator="}" if spaced else None),
+        ET.TreeBuilder(),
+    )
+    body = text.lstrip()
+    above = text.count("\n", 0, len(text) - len(body))
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        builder.start(tag, {**attributes, LINE: str(above + parser.CurrentLineNumber)})
+
+    def entity(*_: object) -> None:  # which can grow without end
+        raise ValueError(f"URDF, line {above + parser.CurrentLineNumber}: entities are not read")
+
+    parser.StartElementHandler, parser.EndElementHandler = start, builder.end
+    parser.EntityDeclHandler = entity
+    try:
+        parser.Parse(body, True)
+    except expat.ExpatError as error:
+        why = expat.ErrorString(error.code)
+        raise ValueError(f"URDF, line {above + error.lineno}: this is no XML ({why})") from None
+    return builder.close()
+
+
+def wrong(element: ET.Element, why: str) -> ValueError:
+    """Say what is wrong, and in which line."""
+    return ValueError(f"URDF, line {element.get(LINE)}: {why}")
 
 
 def _named(robot: ET.Element, tag: str) -> Iterator[tuple[str, ET.Element]]:
@@ -156,9 +189,9 @@ def _named(robot: ET.Element, tag: str) -> Iterator[tuple[str, ET.Element]]:
     for element in robot.findall(tag):
         name = element.get("name")
         if not name:
-            raise ValueError(f"URDF: a {tag} has no name")
+            raise wrong(element, f"a {tag} has no name")
         if name in names:
-            raise ValueError(f"URDF: there are two {tag}s called {shown(name)}")
+            raise wrong(element, f"there are two {tag}s called {shown(name)}")
         names.add(name)
         yield name, element
 
@@ -173,13 +206,13 @@ def _edges(robot: ET.Element) -> Iterator[Edge]:
             found = element.find(end)
             link = found.get("link") if found is not None else None
             if link is None:
-                raise ValueError(f"URDF: the joint {shown(name)} has no {end}")
+                raise wrong(element, f"the joint {shown(name)} has no {end}")
             if link not in links:
                 why = unknown("link", link, links)
-                raise ValueError(f"URDF: the joint {shown(name)} has a {end}, but there is {why}")
+                raise wrong(element, f"the joint {shown(name)} has a {end}, but there is {why}")
             ends.append(link)
         if ends[1] in children:
-            raise ValueError(f"URDF: the link {shown(ends[1])} hangs from two joints")
+            raise wrong(element, f"the link {shown(ends[1])} hangs from two joints")
         children.add(ends[1])
         yield Edge(element, name, *ends)
 
@@ -205,14 +238,13 @@ def _hang(edge: Edge, above: Link, rows: list[Joint]) -> Link:
         return Link(above.row, C, at)
     if kind not in MOVES:
         allowed = "only fixed, revolute, continuous and prismatic joints are read"
-        raise ValueError(f"URDF: the joint {shown(edge.name)} is {shown(kind)}; {allowed}")
+        raise edge.wrong(f"is {shown(kind)}; {allowed}")
     axis = _numbers(edge, edge.element.find("axis"), "xyz", (1, 0, 0))
     if not axis.any():
-        raise ValueError(f"URDF: the axis of the joint {shown(edge.name)} is zero")
+        raise edge.wrong("has the axis zero")
     lower, upper = _limits(edge, kind)
     if lower > upper:
-        said = f"has its lower limit {lower:g} above its upper {upper:g}"
-        raise ValueError(f"URDF: the joint {shown(edge.name)} {said}")
+        raise edge.wrong(f"has its lower limit {lower:g} above its upper {upper:g}")
     parent = None if above.row is None else rows[above.row].name
     slide, place = kind == "prismatic", at.tolist()
     axis = C @ (axis / abs(axis).max())
@@ -237,7 +269,7 @@ def _mimic(edge: Edge, edges: list[Edge]) -> Mimic | None:
     names = [other.name for other in edges if other is not edge]
     if (joint := mimic.get("joint")) not in names:
         why = unknown("other joint", joint, names)
-        raise ValueError(f"URDF: the joint {shown(edge.name)} has a mimic, but there is {why}")
+        raise edge.wrong(f"has a mimic, but there is {why}")
     (times,), (plus,) = (
         _numbers(edge, mimic, key, default)
         for key, default in (("multiplier", (1,)), ("offset", (0,)))
@@ -258,7 +290,7 @@ def _numbers(edge: Edge, element: ET.Element | None, key: str, default: ArrayLik
     if values.shape != wanted.shape or not np.isfinite(values).all() or "_" in text:
         needs = "a number" if len(wanted) == 1 else f"{len(wanted)} numbers"
         of = f"{key} of the joint {shown(edge.name)}"
-        raise ValueError(f"URDF: {of} must be {needs}, not {shown(text)}")
+        raise wrong(edge.element, f"{of} must be {needs}, not {shown(text)}")
     return values
 
 

@@ -13,9 +13,10 @@ from ikteach.body.figures import BALL, GAZE, HAND, HEEL, Figure, walker
 from ikteach.motion import gait
 from ikteach.motion.live.session import Session
 from ikteach.motion.path import Motion
+from ikteach.motion.paths.bones import CMU, bones_of
 from ikteach.motion.paths.perform import imitate, perform
 from ikteach.motion.paths.recorded import Recorded
-from ikteach.motion.paths.retarget import CMU, bones_of, retarget
+from ikteach.motion.paths.retarget import retarget
 from ikteach.motion.paths.skeleton import with_skeleton
 from ikteach.motion.paths.walk import natural
 from ikteach.motion.track import Track
@@ -25,10 +26,8 @@ FEET = ("foot.l", "foot.r")  # rows of a walker that lie flat in both zero poses
 BALLS = dict(zip(gait.walking.names, ("ball.l", "ball.r", "hand.r", "hand.l"), strict=True))
 NOTES = ("play", "pause", "error", "reset")  # events of a session that set nothing
 FRAMES = 240  # of a cycle of the thesis's walk
-LOW_SHARE, ROUNDS = 0.4, 5  # of the frames that tell where the ground is; of the search for them
 FINE = 1 / 60  # time between two frames of a walk that is written down [s]
-NEAR_GROUND = 0.03  # a point that is lower may stand [m]
-AT_REST = 1e-6  # what rounding makes of the speed of a point at rest is below [m/s]
+LONGEST = 60.0  # of a recording that becomes a human's motion [s]
 
 
 def limbs(tree: Tree, names: Sequence[str] | None = None) -> Effectors:
@@ -60,7 +59,7 @@ def three_walks(recording: Any) -> dict[str, tuple[Figure, Motion]]:
     """
     tree, walk = walker().tree, gait.walking
     thirteen = Figure(tree, limbs(tree))
-    recorded = levelled(retarget(recording, thirteen, CMU, feet=FEET))
+    recorded = retarget(recording, thirteen, CMU, feet=FEET)
     recorded = with_skeleton(recorded, recording, CMU, tree)
     times = walk.period * np.arange(FRAMES) / FRAMES
     course = walk.on(*Figure(tree, _as_thesis(tree)))
@@ -82,37 +81,6 @@ def three_walks(recording: Any) -> dict[str, tuple[Figure, Motion]]:
         "thesis": (four, thesis),
         "natural": (walker(), natural),
     }
-
-
-def levelled(walk: Recorded) -> Recorded:
-    """Take whole strides of a recorded walk, on level ground.
-
-    The first frame of many files is no part of the motion but a pose to measure the body by. The
-    ground is where the lower foot is, a line in time. A heel or ball stands while it goes back as
-    the body has it (Zeni, Richards & Higginson 2008, Gait & Posture 27:710) and is low. From where
-    the left foot comes down to where it comes down again, the motion can begin anew without a leap.
-    ValueError if it does so less than twice.
-    """
-    times, targets = walk.times[1:], walk.targets[1:].copy()
-    feet = [i for i, name in enumerate(walk.names) if name.startswith(("heel", "ball"))]
-    points = [i for i, name in enumerate(walk.names) if not name.startswith("pelvis.")]
-    lowest = targets[:, feet, 1].min(axis=1)
-    slope = start = 0.0
-    for _ in range(ROUNDS):  # the points that are lowest over the line, which they then make
-        over = lowest - (slope * times + start)
-        near = over <= np.quantile(over, LOW_SHARE)
-        slope, start = np.polyfit(times[near], lowest[near], 1)
-    targets[:, points, 1] -= (slope * times + start - walk.floor)[:, None]
-    low = targets[:, feet, 1] < walk.floor + NEAR_GROUND
-    standing = np.zeros(targets.shape[:2], dtype=bool)
-    standing[:, feet] = low & (np.gradient(targets[:, feet, 2], times, axis=0) < -AT_REST)
-    left = [i for i in feet if walk.names[i].endswith(".l")]
-    down = np.atleast_1d(standing[:, left].any(axis=1))
-    begins = np.flatnonzero(down[1:] & ~down[:-1]) + 1
-    if len(begins) < 2:
-        raise ValueError("the recording has no whole stride of the left foot")
-    whole = slice(begins[0], begins[-1])
-    return replace(walk, times=times[whole], targets=targets[whole], standing=standing[whole])
 
 
 def for_human(path: Motion, figure: Figure, name: str) -> Recorded:
@@ -138,18 +106,23 @@ def for_human(path: Motion, figure: Figure, name: str) -> Recorded:
         skeleton=getattr(path, "skeleton", None),
         floor=path.on(*figure).floor - float(pelvis[:, 1].mean()),
         speed=path.pace,
+        notes=getattr(path, "notes", ()),
     )
 
 
 def imported(recording: Any, name: str) -> Recorded:
     """Make the thesis's four targets of a recording of a person.
 
-    Its bones are found by what programs call them. The errors are those of `retarget`.
+    Its bones are found by what programs call them; of a long one the first minute is taken. Its
+    `notes` say what was done to it. The errors are those of `retarget`.
     """
-    tree = walker().tree
-    figure = Figure(tree, limbs(tree))
+    tree, most = walker().tree, int(LONGEST / recording.dt) + 1
+    figure, long = Figure(tree, limbs(tree)), len(recording.theta) > most
+    recording = recording._replace(theta=recording.theta[:most])
     bones = bones_of(recording)
     path = retarget(recording, figure, bones, feet=FEET)
+    if long:
+        path = replace(path, notes=(f"Only its first {LONGEST:g} s were taken.", *path.notes))
     return for_human(with_skeleton(path, recording, bones, tree), figure, name)
 
 
@@ -182,10 +155,12 @@ def followed(recording: Any, parts: Sequence[str] | None = None, method: str = "
     tree = walker().tree
     names = [name for name in limbs(tree).names if parts is None or name.startswith(tuple(parts))]
     figure = Figure(tree, limbs(tree, names))
-    run = perform(retarget(recording, figure, CMU, feet=FEET), figure, method, cycles=1)
+    path = retarget(recording, figure, CMU, feet=FEET)
+    run = perform(path, figure, method, cycles=1, dt=recording.dt)
     four = [name.startswith(("ball", "hand")) for name in figure.effectors.names]
     ours = np.degrees(run.theta[:, [tree.index("knee.l"), tree.index("knee.r")]])
-    off = ours - knee_angles(recording)[: len(run)]
+    first = round(path.times[0] / recording.dt)
+    off = ours - knee_angles(recording)[first : first + len(run)]
     return Followed(run, float(run.error[:, four].mean()), float(np.sqrt(np.mean(off**2))))
 
 

@@ -14,11 +14,13 @@ if TYPE_CHECKING:
     from ikteach.view.chapters.workbench import Workbench
     from ikteach.view.live.preset import preset
     from ikteach.view.raster.still import StillScene
+    from ikteach.view.tools.drawing import DrawingPad
     from ikteach.view.webgl.scene import Scene
 
 _HOMES = {
     "BendBench": "chapters.singularity",
     "ColumnPoser": "chapters.jacobian",
+    "DrawingPad": "tools.drawing",
     "GaitPlayer": "chapters.gait",
     "Poser": "chapters.figure",
     "Scene": "webgl.scene",
@@ -33,6 +35,7 @@ _HOMES = {
 __all__ = [
     "BendBench",
     "ColumnPoser",
+    "DrawingPad",
     "GaitPlayer",
     "Poser",
     "Scene",

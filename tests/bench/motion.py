@@ -16,8 +16,9 @@ from ikteach.formats.bvh import read_bvh, recorded_walk, write_bvh
 from ikteach.motion import gait
 from ikteach.motion.live.session import Session
 from ikteach.motion.paths import quality
+from ikteach.motion.paths.bones import CMU
 from ikteach.motion.paths.perform import imitate, perform
-from ikteach.motion.paths.retarget import CMU, markers, retarget
+from ikteach.motion.paths.retarget import markers, retarget
 from ikteach.motion.paths.walk import WALKS, Walk
 from ikteach.study import gait_report
 
@@ -61,7 +62,9 @@ def retargeted():
         path = retarget(recorded_walk(), figures.Figure(tree, effectors), CMU, feet=FEET)
         run = perform(path, figures.Figure(tree, effectors), "dls", cycles=1)
         knees = np.degrees(run.theta[:, [tree.index("knee.l"), tree.index("knee.r")]])
-        off = np.sqrt(((knees - knee_angles(recorded_walk())[: len(run)]) ** 2).mean())
+        first = round(path.times[0] / recorded_walk().dt)
+        theirs = knee_angles(recorded_walk())[first : first + len(run)]
+        off = np.sqrt(((knees - theirs) ** 2).mean())
         met = 1000 * run.error.mean()
         print(f"dls × 2, {len(effectors):2} effectors{'':12}{met:10.1f}{off:17.1f}")
 

@@ -48,7 +48,7 @@ def test_rows_effectors_limits_and_mimics():
         ('mimic joint="finger_a"', 'mimic joint="a9"', "'finger_b' has a mimic, but there is no"),
         ('mimic joint="finger_a"', 'mimic joint="finger_b"', "no other joint 'finger_b'"),
         ("<mimic joint=", "<mimic to=", "no other joint None"),
-        ('<axis xyz="0 0 2"/>', '<axis xyz="0 0 0"/>', "axis of the joint 'a6' is zero"),
+        ('<axis xyz="0 0 2"/>', '<axis xyz="0 0 0"/>', "the joint 'a6' has the axis zero"),
         ('lower="-2.9" upper="2.9"', 'lower="3" upper="2.9"', "'a1' has its lower limit 3"),
         ('lower="-2.9"', 'lower="-2_9"', "lower of the joint 'a1' must be a number"),
         ('<link name="l1"/>', '<link name="l1"/><link name="l1"/>', "two links called 'l1'"),
@@ -65,8 +65,14 @@ def test_rows_effectors_limits_and_mimics():
     ],
 )
 def test_damage_is_named(old, new, words):
-    with pytest.raises(ValueError, match=re.escape(words)):
-        read_urdf(TEXT.replace(old, new, 1))
+    damaged = TEXT.replace(old, new, 1)
+    with pytest.raises(ValueError, match=re.escape(words)) as caught:
+        read_urdf(damaged)
+    line = re.match(r"URDF, line (\d+): |URDF: one link must hang", str(caught.value))
+    assert line is not None
+    if line[1] and "no XML" not in words:  # it is that of the element, whose name stands there
+        named = re.findall(r"'(\w+)'", str(caught.value)) or ["link"]
+        assert any(name in damaged.splitlines()[int(line[1]) - 1] for name in named)
 
 
 HABITS = {
@@ -177,3 +183,49 @@ def test_what_is_no_robot_is_refused():
     ):
         with pytest.raises(ValueError, match="URDF"):
             read_urdf(text)
+
+
+JOINT = (
+    "\n\n<robot name='r'>\n<link name='a'/>\n<link name='b'/>\n<joint name='j' type='revolute'>\n"
+    "<parent link='a'/><child link='b'/><axis xyz='0 3 4'/></joint>\n</robot>"
+)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("revolute", "planar", "URDF, line 6: the joint 'j' is 'planar'; only fixed, revolute"),
+        ("revolute", "floating", "URDF, line 6: the joint 'j' is 'floating'; only fixed"),
+        ("0 3 4", "0,3,4", "line 6: xyz of the joint 'j' must be 3 numbers, not '0,3,4'"),
+        ("0 3 4", "nan 0 1", "line 6: xyz of the joint 'j' must be 3 numbers"),
+        ("<link name='b'/>", "<link name='b'/><xacro:arm/>", "line 5: <xacro:arm> is left"),
+        ("</joint>", "</joint></robot><robot>", "line 7: this is no XML (junk after document"),
+        (
+            "<robot",
+            "<!DOCTYPE r [<!ENTITY a 'b'>\n<!ENTITY c '&a;&a;'>]><robot",
+            "line 3: entities",
+        ),
+        ("<robot", "<sdf", "no XML (mismatched tag)"),
+        ("'a'/><child", "'b'/><child", "line 6: the joint 'j' hangs from itself in a circle"),
+        ("</joint>", "<mimic joint='j'/></joint>", "line 6: the joint 'j' has a mimic, but"),
+        ("type='revolute'", "", "line 6: the joint 'j' is None"),
+        (JOINT, JOINT[:130], "line 7: this is no XML (unclosed token)"),
+    ],
+)
+def test_damage_is_told_with_its_line(old, new, words):
+    with pytest.raises(ValueError, match=re.escape(words)) as caught:
+        read_urdf(JOINT.replace(old, new, 1))
+    assert len(str(caught.value)) < 300
+
+
+def test_a_base_of_inertia_alone_and_an_axis_that_is_no_unit():
+    heavy = JOINT.replace(
+        "<link name='a'/>", "<link name='a'><inertial><mass value='1'/></inertial></link>"
+    )
+    tree = read_urdf(heavy).tree
+    assert_allclose(tree.axes, [[0, 0.6, 0.8]])
+
+
+def test_what_is_nested_without_end_is_no_robot():
+    with pytest.raises(ValueError, match="URDF"):
+        read_urdf("<robot>" + "<a>" * 50_000 + "</a>" * 50_000 + "</robot>")

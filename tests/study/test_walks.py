@@ -1,7 +1,5 @@
 """Three walks of one body: whole strides on level ground, and what is measured lately."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -10,7 +8,7 @@ from ikteach.formats.bvh import recorded_walk
 from ikteach.motion.live.abreast import Abreast
 from ikteach.motion.live.session import Session
 from ikteach.motion.paths import quality
-from ikteach.study.walks import followed, for_human, lately, levelled, limbs, three_walks
+from ikteach.study.walks import followed, for_human, lately, limbs, three_walks
 
 
 @pytest.fixture(scope="module")
@@ -30,22 +28,6 @@ def test_the_recorded_walk_is_of_whole_strides_on_level_ground(walks):
     share = walk.standing[:, feet].mean(axis=0)
     assert ((share > 0.2) & (share < 0.75)).all()
     assert walk.standing[:, feet].any(axis=1).all()  # a walk: there is always a foot on the ground
-
-
-def test_ground_that_slopes_is_made_level_again(walks):
-    walk = walks["recorded"][1]
-    twice = np.concatenate([walk.targets] * 3)
-    times = walk.span / len(walk.times) * np.arange(len(twice))
-    points = [i for i, name in enumerate(walk.names) if not name.startswith("pelvis.")]
-    sloping = twice.copy()
-    sloping[:, points, 1] += 0.02 * times[:, None]
-    three = replace(walk, times=times, targets=twice, standing=np.concatenate([walk.standing] * 3))
-    level, found = levelled(three), levelled(replace(three, targets=sloping))
-    assert found.targets == pytest.approx(level.targets, abs=0.005)
-    still = replace(three, targets=np.tile(walk.targets[:1], (len(times), 1, 1)))
-    for pace in 1 + np.arange(7) / 7:  # a speed of 0 is rounded by each in another way
-        with pytest.raises(ValueError, match="no whole stride"):
-            levelled(replace(still, times=pace * times))
 
 
 def test_the_thesis_has_its_own_targets_and_a_pelvis_that_is_the_ground(walks):

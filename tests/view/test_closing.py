@@ -84,7 +84,8 @@ def some_trials() -> Any:
 FIGURES: dict[Any, Callable[[], Any]] = {
     ikteach.view.BendBench: ikteach.view.BendBench,
     ikteach.view.ColumnPoser: lambda: ikteach.view.ColumnPoser(arm()),
-    ikteach.view.GaitPlayer: ikteach.view.GaitPlayer,
+    ikteach.view.DrawingPad: ikteach.view.DrawingPad,
+    ikteach.view.GaitPlayer: lambda: ikteach.view.GaitPlayer(pad=True),
     ikteach.view.Poser: lambda: ikteach.view.Poser(figures.human()),
     ikteach.view.Scene: lambda: ikteach.view.Scene(*arm()),
     ikteach.view.Simulator: lambda: ikteach.view.Simulator(PlanarReach()),

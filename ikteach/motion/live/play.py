@@ -59,7 +59,7 @@ class Play:
         self.dt = number("dt", dt)
         if not self.dt:
             raise ValueError(f"dt must be more than 0, not {shown(dt)}")
-        self.iterations = count("iterations", iterations)
+        steps = count("iterations", iterations)
         self.start = pose_of(self.tree, start)
         check_options(options, SESSION)
         try_options(self.tree, self.effectors, options)
@@ -68,7 +68,7 @@ class Play:
         known = usual if methods is None else methods_of(methods)
         method = method or ("dls" if "dls" in known else next(iter(known)))
         motion = motion_of(self.tree, self.effectors, gait)
-        self._settings = self._first = Settings(*motion, known, method, options)
+        self._settings = self._first = Settings(*motion, known, method, options, iterations=steps)
         self._known(method)
         self.runs = self.ticks = self._waited = 0
         self._begin()
@@ -128,7 +128,7 @@ class Play:
         options["wish"] = settings.course.wish(phase)
         frames: Frames | None = self.frames
         theta, capped = self._poses, np.zeros(len(self._poses), dtype=bool)
-        for _ in range(self.iterations):
+        for _ in range(settings.iterations):
             solver = PerPose(settings.methods.values())
             to = step(self.tree, theta, self.effectors, targets, solver, frames=frames, **options)
             theta, frames, capped = to.theta, None, capped | to.capped
@@ -231,7 +231,7 @@ class Play:
             "by_hand": self._settings.by_hand is not None,
             "targets": self.targets.tolist(),
             "dt": self.dt,
-            "iterations": self.iterations,
+            "iterations": self._settings.iterations,
             "gait": in_words(self._settings.gait.settings()),
             "methods": in_words(self._settings.methods),
             "options": in_words(self._settings.options),

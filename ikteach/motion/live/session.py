@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ikteach.arrays import ArrayLike, frozen
-from ikteach.checks import numbers
+from ikteach.checks import count, numbers
 from ikteach.motion.checks import checked, solver_of
 from ikteach.motion.gait import Gait
 from ikteach.motion.live.log import Event
@@ -65,9 +65,10 @@ class Session(Play):
         what = {n: value for n, value in new.items() if n not in old or value != old[n]}
         if not what and isinstance(gait, Gait):
             return
+        going_on = None
         if not what or "name" in what or "curve" in what or set(new) != set(old):
-            what = {"motion": gait.name}  # another, or other data
-        self._change("gait", what, gait=gait, course=course)
+            what, going_on = {"motion": gait.name}, False  # another, or other data
+        self._change("gait", what, going_on=going_on, gait=gait, course=course)
 
     def change(self, **parameters: Any) -> None:
         """Give the gait other parameters.
@@ -140,6 +141,16 @@ class Session(Play):
             known = self._known(method)
             self._try(known, self.methods[known], {**self.options, "max_step": cap})
         self._change("caps", dict(caps), caps=dict(caps))
+
+    @property
+    def iterations(self) -> int:
+        """How many steps a tick takes."""
+        return self._settings.iterations
+
+    @iterations.setter
+    def iterations(self, iterations: int) -> None:
+        if (steps := count("iterations", iterations)) != self.iterations:
+            self._change("iterations", {"iterations": steps}, iterations=steps)
 
     @property
     def by_hand(self) -> bool:

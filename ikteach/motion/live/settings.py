@@ -56,6 +56,7 @@ class Settings:
     options  of `step`, the same for all methods
     caps     {method: max_step [rad] or None} of methods that have their own
     by_hand  the targets (k, 3) that were put by hand [m], None where the gait moves them
+    iterations  steps a tick
     """
 
     gait: Motion
@@ -65,6 +66,7 @@ class Settings:
     options: Mapping[str, Any] = field(default_factory=dict)
     caps: Mapping[str, float | None] = field(default_factory=dict)
     by_hand: Array | None = None
+    iterations: int = 1
 
     def options_of(self, method: str) -> dict[str, Any]:
         """Give the options of `step` for one method."""

@@ -28,6 +28,7 @@ class Recorded(NamedMotion):
     floor    height of the ground [m]
     pace     speed at which the ground goes by [m/s]
     tempo    how many times as fast as it was recorded
+    notes    sentences on what was done to it
 
     `change` makes variants, of what is not data. ValueError if a shape is wrong, a number is not
     finite or there are fewer than two times.
@@ -46,6 +47,7 @@ class Recorded(NamedMotion):
     slowdown: int = 1
     forward: bool = False
     wound: Mapping[str, float] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         self.check()
@@ -99,7 +101,7 @@ class Recorded(NamedMotion):
 
     def settings(self) -> dict[str, Any]:
         """Return its parameters by name, without its data."""
-        data = ("times", "targets", "names", "standing", "skeleton")
+        data = ("times", "targets", "names", "standing", "skeleton", "notes")
         return {name: value for name, value in vars(self).items() if name not in data}
 
     def _place(self, phase: ArrayLike) -> tuple[Array, Any]:

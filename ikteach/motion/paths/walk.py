@@ -18,10 +18,11 @@ from numbers import Real
 import numpy as np
 
 from ikteach.arrays import Array, ArrayLike, Mask, frozen
-from ikteach.body import Tree
-from ikteach.body.figures import BALL, GAZE, HEEL
-from ikteach.checks import numbers, shown
+from ikteach.body import Tree, forward
+from ikteach.body.figures import BALL, GAZE, HEEL, walker
+from ikteach.checks import number, numbers, shown
 from ikteach.motion.path import NamedMotion
+from ikteach.motion.paths.stroke import rounded
 
 NAMES = ("pelvis", "heel.l", "ball.l", "heel.r", "ball.r", "pelvis.up", "pelvis.ahead")
 SIDES = (("l", 1, 0.0), ("r", -1, 0.5))  # name, where x is, cycles behind the left foot
@@ -30,6 +31,11 @@ SMOOTH = 0.015  # standard deviation of what rounds its corners [cycles]
 FLAT = 0.5  # a foot that is tilted less lies on heel and ball [degrees]
 EASE = 0.2  # height of the ball at which toes no longer keep level [m]
 HERE = 1e-4  # step of a difference in time [cycles]
+
+SPEEDS = 0.4, 2.0  # at which people walk [m/s]
+WALK_RATIO = 0.0058  # step length over cadence [m min]
+SINKS, BENT = 0.0025, 0.008  # steps by which a pelvis is lowered; what a bent knee spares [m]
+SHAPE = ("duty", "reach", "lift", "strike", "push_off", "bob", "tilt", "height")
 
 LEAST = {"cadence": 1.0, "duty": 0.51, "lift": 0.0, "lift_at": 0.05, "height": 0.5}
 MOST = {"cadence": 400.0, "duty": 0.9, "lift": 0.3, "lift_at": 0.6, "height": 1.1}
@@ -123,6 +129,21 @@ class Walk(NamedMotion):
     def stride(self) -> float:
         """Way of a cycle [m]."""
         return self.speed * 120 / self.cadence
+
+    @property
+    def spare(self) -> float:
+        """How much longer a walker's legs are than it needs [m].
+
+        It is about its longest reach; below 0 they are too short for its stride.
+        """
+        q = np.arange(0, SAMPLES, 10) / SAMPLES
+        p, R = self.pelvis(q)
+        hips, leg = legs()
+        far = [
+            np.linalg.norm(self._ankle((q - late) % 1, x)[0] - p - R @ hip, axis=-1).max()
+            for (_, x, late), hip in zip(SIDES, hips, strict=True)
+        ]
+        return leg - float(max(far))
 
     def at(self, phase: ArrayLike) -> Array:
         """Return the targets `NAMES` at phases (...) [rad], (..., 7, 3) [m].
@@ -252,6 +273,41 @@ fast = Walk("fast", speed=1.5, cadence=126.0, reach=0.25, bob=0.012, strike=18.0
 WALKS: Mapping[str, Walk] = {"slow": slow, "natural": natural, "fast": fast}  # as the norms are
 
 
+def at_speed(speed: float) -> Walk:
+    """Make the walk of that speed [m/s], as people change theirs.
+
+    Step length over cadence stays the same (Sekiya & Nagasaki 1998, Gait & Posture 7:225); the
+    other parameters are between those of `WALKS`, and the pelvis sinks until the legs reach.
+    ValueError beyond 0.4 and 2 m/s.
+    """
+    if not SPEEDS[0] <= (speed := number("speed", speed)) <= SPEEDS[1]:
+        raise ValueError(f"people walk at {SPEEDS[0]:g} to {SPEEDS[1]:g} m/s, not {speed:g}")
+    known = [walk.speed for walk in WALKS.values()]
+    between = {
+        name: float(np.interp(speed, known, [getattr(walk, name) for walk in WALKS.values()]))
+        for name in SHAPE
+    }
+    cadence = float(np.sqrt(60 * speed / WALK_RATIO))
+    walk = natural.change(**between, speed=speed, cadence=cadence)
+    while walk.spare < BENT:
+        walk = walk.change(height=walk.height - SINKS)
+    return walk
+
+
+@lru_cache(maxsize=1)
+def legs() -> tuple[Array, float]:
+    """Find a walker's hips, and the length of its leg [m].
+
+    The hips (2, 3) are seen from its pelvis.
+    """
+    tree = walker().tree
+    p = forward(tree, np.zeros(len(tree))).positions
+    at = {name: p[tree.index(name)] for name in tree.names}
+    hips = np.array([at[f"hip.turn.{side}"] - at["pelvis.z"] for side, *_ in SIDES])
+    chain = np.array([at[f"{part}.l"] for part in ("hip.turn", "knee", "foot")])
+    return frozen(hips), float(np.linalg.norm(np.diff(chain, axis=0), axis=1).sum())
+
+
 @lru_cache(maxsize=32)
 def targets_of(walk: Walk) -> Array:
     """Make a table of a walk's targets over a cycle, (SAMPLES + 1, 7, 3)."""
@@ -316,8 +372,5 @@ def tilts(duty: float, strike: float, push_off: float) -> Array:
     at = [*(duty * u for u in stance), *(duty + (1 - duty) * u for u in swing)]
     u = np.arange(SAMPLES) / SAMPLES
     straight = np.interp(u, at, [*stance.values(), *swing.values()], period=1)
-    f = np.fft.rfftfreq(SAMPLES, 1 / SAMPLES)
-    smooth = np.fft.irfft(
-        np.fft.rfft(straight) * np.exp(-0.5 * (2 * pi * f * SMOOTH) ** 2), SAMPLES
-    )
+    smooth = rounded(straight, SMOOTH)
     return frozen([*smooth, smooth[0]])

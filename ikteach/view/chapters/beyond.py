@@ -12,6 +12,7 @@ from ikteach.formats.bvh import recorded_walk
 from ikteach.markup import Markup
 from ikteach.motion.live.abreast import Abreast
 from ikteach.motion.live.session import Session
+from ikteach.motion.paths.walk import Walk, at_speed
 from ikteach.solvers import SOLVERS
 from ikteach.study import gait_report
 from ikteach.study.walks import lately, limbs, three_walks
@@ -30,6 +31,7 @@ PARTS = ("pelvis", "feet", "knees", "elbows", "hands")  # effectors that are swi
 PART = {"heel": "feet", "ball": "feet", "knee": "knees", "elbow": "elbows", "hand": "hands"}
 NOBODY, SIDE = "nobody", "three-quarter"
 SHOWN, FIRST = "shown", "sdls"  # the one method of each walk, and which it is at first
+TOO_SHORT = 0.01  # by which legs may be too short before it is said [m]
 TABLE = ("score", "slip", "drag", "clearance", "double support")
 PARAMETERS: Mapping[str, tuple[str, float, float, float]] = {
     "speed": ("speed [m/s]", 0.6, 1.6, 0.05),
@@ -41,6 +43,16 @@ PARAMETERS: Mapping[str, tuple[str, float, float, float]] = {
     "height": ("height of the pelvis [m]", 0.84, 0.95, 0.005),
     "tilt": ("tilt of the pelvis [°]", 0.0, 25.0, 1.0),
 }
+
+
+def stretched(walk: Walk) -> str:
+    """Say so if a walk's stride is too long."""
+    if walk.spare > -TOO_SHORT:
+        return ""
+    return (
+        f"The legs are {-100 * walk.spare:.0f} cm too short for a stride of {walk.stride:.2f} m:"
+        " the feet cannot be where the plan wants them."
+    )
 
 
 class WalksPlayer(Live):
@@ -89,6 +101,8 @@ class WalksPlayer(Live):
             }
             for name, (label, *span) in PARAMETERS.items()
         ]
+        follow = tick_box("the rest follows the speed, as in people", width="auto")
+        follows = {"follows": Does(follow, self._follow)}
         asked = {part: Does(tick_box(part, True, width="auto"), self._weigh) for part in PARTS}
         ground = dropdown("Ground goes with", [*self.walks, NOBODY], "natural", label_width="110px")
         sides = dropdown("View", sides_of(self.tree, self._seen_at), SIDE, **look)
@@ -107,7 +121,7 @@ class WalksPlayer(Live):
                 {"view": Does(sides, self.scene.look_from), "ground": ground},
                 {"skeleton": Does(tick_box(RECORDED_BONES, False, width="auto"), self._haunt)},
             ],
-            folded={"The natural walk": sliders, "Effectors of all": [asked]},
+            folded={"The natural walk": [*sliders, follows], "Effectors of all": [asked]},
             opened=0,
             guard=self.guarded,
         )
@@ -121,7 +135,18 @@ class WalksPlayer(Live):
             session.use(SHOWN, method)
 
     def _change(self, **parameters: float) -> None:
-        self.session.sessions["natural"].change(**parameters)
+        session = self.session.sessions["natural"]
+        if "speed" in parameters and self.panel.values["follows"]:
+            session.gait = at_speed(parameters["speed"])
+            self.panel.put(**{name: getattr(session.gait, name) for name in PARAMETERS})
+        else:
+            session.change(**parameters)
+        assert isinstance(session.gait, Walk)
+        self.status.say(stretched(session.gait))
+
+    def _follow(self, on: bool) -> None:
+        if on:
+            self._change(speed=self.panel.values["speed"])
 
     def _weigh(self, _: bool) -> None:
         """Ask for the parts that are ticked, and for nothing else."""

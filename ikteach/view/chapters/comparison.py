@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from ikteach.markup import Markup, as_label
 from ikteach.motion import BUSS_CAPS, Track
-from ikteach.motion.gait import stature
+from ikteach.motion.gait import Gait, stature
 from ikteach.motion.live.session import Session
 from ikteach.motion.live.settings import SESSION, check_options
 from ikteach.motion.methods import Methods
@@ -23,8 +23,8 @@ from ikteach.view.live.live import Live
 from ikteach.view.live.panel import Does, Panel, button, choice, slider
 from ikteach.view.live.strips import SECONDS, Strips
 from ikteach.view.stage.colours import effector_colour
-from ikteach.view.stage.lengths import Lengths
-from ikteach.view.tools.session_panels import motions, other_motion
+from ikteach.view.stage.lengths import Lengths, counted
+from ikteach.view.tools.session_panels import WRITTEN, as_set, motions, settle_sliders, takes
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets import doors
 from ikteach.view.widgets.layout import Arranged
@@ -66,7 +66,9 @@ class Race(Live):
         session = Session(methods=methods, **options)
         super().__init__(session, _scene(session), slot, Strips(session))
         self._table = Prose()
-        self._first = session.gait
+        sines = isinstance(session.gait, Gait)  # a race of the thesis is run by its own motions
+        left_out = WRITTEN if sines else ()
+        self._known = {name: m for name, m in motions(session).items() if name not in left_out}
         self.panel = self._panel(degrees)
         self.controls = self.panel.controls
         step, reset = button("Step"), button("Reset")
@@ -78,6 +80,7 @@ class Race(Live):
             self.status,
             self.strips,
         ]
+        settle_sliders(self.panel, session)
         self._bound()
         self.report()
 
@@ -86,7 +89,7 @@ class Race(Live):
         speed = slider("speed ω [rad/s]", session.gait.speed, 0.0, 20.0, 0.1)
         row = {  # side by side where there is room, so that figures and curves are seen with them
             "caps": Does(choice("caps", [EQUAL, OWN]), self._bound),
-            "motion": Does(choice("motion", motions(session), session.gait.name), self._move),
+            "motion": Does(choice("motion", [*self._known], session.gait.name), self._move),
             "degrees": Does(slider("equal cap [° per step]", degrees, 1.0, 45.0, 0.5), self._bound),
             "speed": Does(speed, lambda speed: session.change(speed=speed)),
         }
@@ -109,7 +112,8 @@ class Race(Live):
         far = ", ".join(f"{name} {length(run.error.mean())}" for name, run in tracks.items())
         who = self.scene.stage.crowd
         caps = self.values["caps"]
-        return f"{who}, {session.gait.name}, {caps}. Mean distance: {far or 'no tick yet'}."
+        said = f"{who}, {session.gait.name}, {caps}. Mean distance: {far or 'no tick yet'}."
+        return said + counted(session.effectors)
 
     def draw(self) -> None:
         """Draw the session's state in the scene."""
@@ -131,8 +135,10 @@ class Race(Live):
         self._table.value = session_table(self.session) + whose
 
     def _move(self, motion: str) -> None:
-        self.session.gait = other_motion(self.session, motion, self._first)
-        self.panel.put(speed=self.session.gait.speed)
+        self.session.gait = as_set(self._known[motion](), self.session)
+        if takes(self.session.gait, "speed"):
+            self.panel.put(speed=self.session.gait.speed)
+        settle_sliders(self.panel, self.session)
 
     def _bound(self, _: Any = None) -> None:
         session, values = self.session, self.values

@@ -107,11 +107,11 @@ class Panel:
         for name, one in row.items():
             control, act = one if isinstance(one, Does) else Does(one, None)
             self.controls[name] = control
-            self._listen(control, _idle if act is None else self._guard(act))
+            self._listen(name, control, _idle if act is None else self._guard(act))
         made = [self.controls[name] for name in row]
         return made[0] if len(made) == 1 else widgets.HBox(made, layout={"flex_flow": "row wrap"})
 
-    def _listen(self, control: Any, act: Act) -> None:
+    def _listen(self, name: str, control: Any, act: Act) -> None:
         if isinstance(control, widgets.Button):
             control.on_click(lambda _: act())
             return

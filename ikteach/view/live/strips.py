@@ -45,7 +45,8 @@ class Strips(Living, anywidget.AnyWidget):
         super().__init__(
             panels=[
                 {
-                    "title": "each effector, shown method",
+                    "title": "each effector, shown method"
+                    + ("" if session.effectors.w.all() else "; directions: 2ℓ sin(φ/2)"),
                     "lines": _lines(session.effectors.names),
                     **distance,
                 },

@@ -84,6 +84,24 @@ def misses(effectors: Effectors, error: Array) -> Array:
     return np.where(effectors.w, error, 2 * np.arcsin(np.minimum(error / diameter, 1)))
 
 
+def told(tree: Tree, effectors: Effectors, error: Array) -> list[str]:
+    """Say errors (k,) [m] as they are read: "pelvis 1.2 cm", "gaze 3.4° (0.6 cm)".
+
+    A direction is off by an angle, which makes metres by its length.
+    """
+    length, off = Lengths.of(tree, effectors), misses(effectors, error)
+    each = zip(effectors.names, effectors.w, error, off, strict=True)
+    return [
+        f"{name} {length(float(d))}" if w else f"{name} {DEGREE(float(phi))} ({length(float(d))})"
+        for name, w, d, phi in each
+    ]
+
+
+def counted(effectors: Effectors) -> str:
+    """Say how directions count among distances, if there are some."""
+    return "" if effectors.w.all() else " A direction that is off by φ counts as 2ℓ sin(φ/2)."
+
+
 def decade(tree: Tree, effectors: Effectors) -> float:
     """Return the power of ten nearest to the body's reach [m].
 

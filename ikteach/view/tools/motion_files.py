@@ -95,4 +95,5 @@ class MotionFiles(Cell):
         path = self._path(".bvh")
         motion = imported(read_bvh(path), path.stem[:MOST_NAME])
         self._take(motion)
-        self.status.say(f"{path.name} is open: {motion.span:.1f} s, among the motions.")
+        said = " ".join(motion.notes)
+        self.status.say(f"{path.name} is open: {motion.span:.1f} s, among the motions. {said}")

@@ -31,7 +31,9 @@ def error_picture(run: Log, error: Array) -> tuple[bytes, list[float]]:
         look: Any = {"color": "0.25", "transform": axes.get_xaxis_transform(), "clip_on": False}
         axes.plot(changes, np.ones(len(changes)), "v", label="change", **look)
     last = run.clock[-1] if len(run) > 1 else run.clock[0] + run.dt
-    axes.set(xlim=(run.clock[0], last), xlabel="clock [s]", ylabel="distance to target [m]")
+    ylabel = "distance to target [m]"
+    ylabel += "" if run.effectors.w.all() else "\ndirections: 2ℓ sin(φ/2)"
+    axes.set(xlim=(run.clock[0], last), xlabel="clock [s]", ylabel=ylabel)
     figure.legend(loc="outside upper center", ncols=6, fontsize=8, handlelength=2.6, frameon=False)
     canvas.draw()
     box = axes.get_position()

@@ -1,7 +1,7 @@
 """The panels that change a session: methods, motion, wounds, speed, and how far targets swing."""
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache, partial
 from math import log10, pi, radians
 from typing import Any
@@ -9,14 +9,16 @@ from typing import Any
 import numpy as np
 
 from ikteach.arrays import Array
-from ikteach.body.figures import Figure
+from ikteach.body.figures import human
+from ikteach.checks import shown
 from ikteach.formats.bvh import recorded_walk
 from ikteach.markup import Markup, plain
-from ikteach.motion.gait import MOTIONS, WOUND, Gait, displayed
+from ikteach.motion.gait import LIMBS, MOTIONS, WOUND, Gait, displayed, walking
 from ikteach.motion.live.session import Session
+from ikteach.motion.live.settings import motion_of
 from ikteach.motion.mix import Mix
 from ikteach.motion.path import Motion, Path
-from ikteach.motion.paths.recorded import drawn
+from ikteach.motion.paths.walk import WALKS, Walk
 from ikteach.motion.rules import BUSS_CAPS, clip, hold, ignore, per_chain, whole
 from ikteach.names import unknown
 from ikteach.solvers import SOLVERS, Solver
@@ -33,6 +35,7 @@ from ikteach.view.live.panel import (
     slider,
     tick_box,
 )
+from ikteach.view.tools.drawing import DRAWN, DrawingPad
 from ikteach.view.widgets.prose import Prose
 
 Guard = Callable[[Act], Act]
@@ -40,8 +43,8 @@ OWN, EQUAL, NONE = "each author's own", "equal", "none"
 CLAMPS = {"hard": hard, "soft": soft}
 CAPS = {"whole": whole, "per_chain": per_chain}
 LIMITS = {"hold": hold, "clip": clip, "ignore": ignore}
-BY_HAND, DRAWN = "by hand", "drawn"
-WRITTEN = ("natural", "recorded", DRAWN)  # motions that are made when they are first chosen
+BY_HAND = "by hand"
+WRITTEN = ("natural", "recorded")  # motions that are made when they are first chosen
 LABEL: dict[str, Any] = {"label_width": "150px"}
 LOOK: dict[str, Any] = {"width": "380px", **LABEL}
 
@@ -252,66 +255,75 @@ class WoundPanel(Panel):
 class MotionPanel(Panel):
     """The choice of how the targets move.
 
-    One of the motions is drawn, point by point.
+    given    motions to choose from, beside those that the figure knows
+    by_hand  whether one of the choices is that the targets are moved by hand
+    pad      whether there is a pad, on which a curve is drawn; folded, unless it is "open"
 
-    known  {name: makes the motion}; `add` puts another among them
+    known    {name: makes the motion}; `add` puts another among them
+    pad      the pad, or None
     """
 
-    def __init__(self, session: Session, guard: Guard) -> None:
-        self.session, self._points = session, list[Array]()
-        self.known: dict[str, Callable[[], Motion]] = {
-            **{name: partial(MOTIONS.__getitem__, name) for name in MOTIONS},
-            **{name: partial(human_walk, name) for name in WRITTEN[:2]},
-        }
-        self._said = Prose()
-        names = list(session.effectors.names)
-        motion = choice("Motion", [*self.known, BY_HAND], session.gait.name, label_width="60px")
+    pad: DrawingPad | None = None
+
+    def __init__(
+        self,
+        session: Session,
+        guard: Guard,
+        given: Motion | Mapping[str, Motion] | None = None,
+        *,
+        by_hand: bool = True,
+        pad: bool | str = True,
+    ) -> None:
+        self.session, self.known = session, motions(session, given)
+        self._hand = [BY_HAND] if by_hand else []
+        if pad:
+            self.pad = DrawingPad(session, take=guard(self._go_along), slot=None)
+        names = [*self.known, *self._hand]
+        motion = choice("Motion", names, session.gait.name, label_width="60px")
         super().__init__(
             "Motion",
             [{"motion": Does(motion, self._move)}],
-            folded={
-                "Draw a curve, point by point": [
-                    {"drawn": Does(dropdown("Curve of", names, **LABEL), lambda _: self._forget())},
-                    {
-                        "point": Does(button("Add the place of its target"), self._point),
-                        "forget": Does(button("Forget the points"), self._forget),
-                        "along": Does(button("Go along them"), self._go_along),
-                    },
-                    {"seconds": slider("once round [s]", 2.0, 0.5, 10.0, 0.1, **LOOK)},
-                    self._said,
-                ]
-            },
-            shows=lambda: {"motion": BY_HAND if session.by_hand else session.gait.name},
+            folded={"Draw a path of your own": [self.pad]} if self.pad else None,
+            opened=0 if pad == "open" else None,
+            shows=self._stands,
             guard=guard,
         )
-        self._forget()
+        self.controls |= self.pad.controls if self.pad else {}
 
     def add(self, motion: Motion) -> None:
         """Let the targets make another motion.
 
         From then on it is among those to choose from.
         """
-        if motion.name in (*MOTIONS, *WRITTEN, BY_HAND):
+        if motion.name in (*MOTIONS, *WRITTEN, DRAWN, BY_HAND):
             raise ValueError(f"{motion.name!r} is a motion already: give the file another name")
         as_set(motion, self.session).on(self.session.tree, self.session.effectors)
-        self.known[motion.name] = lambda: motion
-        self._offer()
+        self._offer(motion)
         self._move(motion.name)
 
     def agree(self) -> None:
         """Set the choice to what the session does, without acting."""
-        if not self.session.by_hand and self.session.gait.name not in self.known:
-            gait = self.session.gait
-            self.known[gait.name] = lambda: gait
-            self._offer()
+        gait = self.session.gait
+        if not self.session.by_hand and (gait.name not in self.known or gait.name == DRAWN):
+            self._offer(gait)
+        if self.pad:
+            self.pad.agree()
         super().agree()
 
-    def _offer(self) -> None:
-        self._quiet = True
-        try:
-            self.controls["motion"].options = [*self.known, BY_HAND]
-        finally:
-            self._quiet = False
+    def _stands(self) -> dict[str, Any]:
+        by_hand = self.session.by_hand and self._hand
+        return {"motion": BY_HAND if by_hand else self.session.gait.name}
+
+    def _offer(self, motion: Motion) -> None:
+        """Put a motion among those to choose from."""
+        self.known[motion.name] = partial(_itself, motion)
+        offered, control = (*self.known, *self._hand), self.controls["motion"]
+        if tuple(control.options) != offered:
+            self._quiet = True
+            try:
+                control.options = offered
+            finally:
+                self._quiet = False
 
     def _move(self, name: str) -> None:
         motion = None if name == BY_HAND else as_set(self.known[name](), self.session)
@@ -319,30 +331,8 @@ class MotionPanel(Panel):
         if motion is not None:
             self.session.gait = motion
 
-    def _point(self) -> None:
-        which = self.session.effectors.names.index(self.values["drawn"])
-        self._points.append(self.session.targets[which].copy())
-        self._tell()
-
-    def _forget(self) -> None:
-        self._points.clear()
-        self._tell()
-
-    def _tell(self) -> None:
-        self._said.value = (
-            f"{len(self._points)} points. Move the target by hand (in the scene, by keys or in "
-            "Target position), and add its place; the curve is closed."
-        )
-
-    def _go_along(self) -> None:
-        values, figure = self.values, Figure(self.session.tree, self.session.effectors)
-        if len(self._points) < 2:
-            raise ValueError("a curve needs two points or more: add places of the target first")
-        curve = drawn(
-            self._points, values["seconds"], figure=figure, effector=values["drawn"], name=DRAWN
-        )
-        self.known[DRAWN] = lambda: curve
-        self._offer()
+    def _go_along(self, curve: Motion) -> None:
+        self._offer(curve)
         self._move(DRAWN)
 
 
@@ -369,8 +359,15 @@ class GaitPanel(Panel):
     def agree(self) -> None:
         """Set the sliders to the motion's parameters, without acting."""
         super().agree()
-        for name, control in self.controls.items():
-            control.disabled = not takes(self._session.gait, name)
+        settle_sliders(self, self._session)
+
+
+def settle_sliders(panel: Panel, session: Session) -> None:
+    """Disable the sliders of parameters that the session's motion lacks."""
+    for group in SLIDERS.values():
+        for name in group:
+            if name in panel.controls:
+                panel.controls[name].disabled = not takes(session.gait, name)
 
 
 def takes(motion: Motion, name: str) -> bool:
@@ -384,18 +381,22 @@ def takes(motion: Motion, name: str) -> bool:
 def gait_rows(session: Session, *groups: str, **look: Any) -> list[dict[str, Does]]:
     """Make a slider for each parameter of these groups.
 
-    Only for parameters that the session's motion has.
+    It begins at the value of the session's motion, or of a walk if that motion has none.
     """
     return [
         {
             name: Does(
-                slider(label, getattr(session.gait, name), *span, **{**LOOK, **look}),
+                slider(
+                    label,
+                    gait_values(session, group).get(name, getattr(walking, name)),
+                    *span,
+                    **{**LOOK, **look},
+                ),
                 lambda value, name=name: session.change(**{name: value}),
             )
         }
         for group in groups
         for name, (label, *span) in SLIDERS[group].items()
-        if takes(session.gait, name)
     ]
 
 
@@ -405,18 +406,46 @@ def gait_values(session: Session, *groups: str) -> dict[str, Any]:
     return {name: getattr(session.gait, name) for name in names if takes(session.gait, name)}
 
 
-def motions(session: Session) -> list[str]:
-    """Name the motions that a session's figure can make."""
-    known = list(MOTIONS) if isinstance(session.gait, Gait) else []
-    return known if session.gait.name in known else [*known, session.gait.name]
+def motions(
+    session: Session, given: Motion | Mapping[str, Motion] | None = None
+) -> dict[str, Callable[[], Motion]]:
+    """Find the motions that a session's figure can make.
 
+    Each is made when it is asked for: {name: makes it}.
 
-def other_motion(session: Session, name: str, first: Motion) -> Motion:
-    """Give the motion of that name, or the first one.
+    given  motions that are among them, {name: motion}, or one alone
 
-    The figure keeps its wounds and its way forward.
+    TypeError or ValueError says which of these is none, or none for this figure.
     """
-    return as_set(MOTIONS[name] if name in MOTIONS and name != first.name else first, session)
+    tree, effectors = session.tree, session.effectors
+    known: dict[str, Callable[[], Motion]] = {}
+    usual, _ = motion_of(tree, effectors)
+    if isinstance(usual, Gait):
+        known |= {name: partial(MOTIONS.__getitem__, name) for name in MOTIONS}
+        if set(effectors.names) == set(LIMBS) and set(human().tree.names) <= set(tree.names):
+            known |= {name: partial(human_walk, name) for name in WRITTEN}
+    elif isinstance(usual, Walk):
+        known |= {name: partial(WALKS.__getitem__, name) for name in WALKS}
+    for motion in (*_given(session, given), session.gait):
+        known[motion.name] = partial(_itself, motion)
+    return known
+
+
+def _itself(motion: Motion) -> Motion:
+    return motion
+
+
+def _given(session: Session, given: Any) -> Iterator[Motion]:
+    """Go through the motions of a caller, each by the name that it has there."""
+    if isinstance(given, Motion):
+        given = {given.name: given}
+    if not isinstance(given, Mapping | None):
+        raise TypeError(f"motions are {{name: motion}}, or a motion alone, not {shown(given)}")
+    for name, motion in (given or {}).items():
+        motion, _ = motion_of(session.tree, session.effectors, motion)
+        if name != motion.name and "name" not in motion.settings():
+            raise ValueError(f"the motion {shown(name)} calls itself {shown(motion.name)}")
+        yield motion if name == motion.name else motion.change(name=name)
 
 
 def as_set(motion: Motion, session: Session) -> Motion:

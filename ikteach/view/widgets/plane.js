@@ -1,8 +1,9 @@
-// A plane with lines and arrows, and one point that is dragged, or moved by keys.
+// A plane with lines and arrows, and one point that is dragged, or moved by keys; it may draw.
 
 import { clamp } from "./choosing.js";
 import { connected, listen, OWN_KEYS, svg, take } from "./dom.js";
 import { guarded } from "./guarded.js";
+import { makePen } from "./pen.js";
 
 const SIZE = 320; // of a side, in units of the drawing
 const HEAD = 9; // of an arrow
@@ -27,6 +28,7 @@ function render({ model, el }) {
   plane.append(...axes(model), lines);
   if (model.get("handle")) plane.append(knob);
   const held = drag(plane, knob, model);
+  const lift = model.get("pen") ? penOn(plane, knob, model) : () => {};
 
   function draw() {
     const half = model.get("half");
@@ -50,7 +52,41 @@ function render({ model, el }) {
   return () => {
     gone = true;
     stop();
+    lift();
   };
+}
+
+/**
+ * @param {SVGElement} plane
+ * @param {SVGElement} knob
+ * @param {Model} model
+ */
+function penOn(plane, knob, model) {
+  plane.classList.add("ikteach-drawn");
+  const half = () => model.get("half");
+  return makePen(
+    plane,
+    knob,
+    model,
+    (event) => underPointer(plane, event, half()),
+    (points) => path(points.map((point) => onPlane(point, half()))),
+  );
+}
+
+/**
+ * @param {SVGElement} plane
+ * @param {PointerEvent} event
+ * @param {number} half
+ */
+function underPointer(plane, event, half) {
+  const box = plane.getBoundingClientRect();
+  const [x, y] = [event.clientX - box.left, event.clientY - box.top];
+  return underPoint([x / box.width, y / box.height], half);
+}
+
+/** @param {number[][]} at */
+function path(at) {
+  return `M${at.map((p) => p.join(" ")).join("L")}`;
 }
 
 /**
@@ -113,8 +149,7 @@ function axes(model) {
  */
 function line({ points, colour, arrow, name, legend, ...look }, half) {
   const at = points.map((point) => onPlane(point, half));
-  const d = `M${at.map((p) => p.join(" ")).join("L")}`;
-  const made = [svg("path", { ...stroke({ colour, ...look }), d })];
+  const made = [svg("path", { ...stroke({ colour, ...look }), d: path(at) })];
   const end = at[at.length - 1];
   const before = at[at.length - 2] ?? end;
   const angle = Math.atan2(end[1] - before[1], end[0] - before[0]);
@@ -205,10 +240,7 @@ function drag(plane, knob, model) {
     take(event);
   });
   knob.addEventListener("pointermove", (event) => {
-    if (!held.now) return;
-    const box = plane.getBoundingClientRect();
-    const [x, y] = [event.clientX - box.left, event.clientY - box.top];
-    move(underPoint([x / box.width, y / box.height], model.get("half")));
+    if (held.now) move(underPointer(plane, event, model.get("half")));
   });
   for (const name of ["pointerup", "pointercancel"])
     knob.addEventListener(name, () => {

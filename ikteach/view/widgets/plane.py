@@ -48,7 +48,9 @@ class Stroke:
 class Plane(Living, anywidget.AnyWidget):
     """A plane from −half to half both ways, with lines.
 
-    Its point, if the handle has a name, is dragged, or moved by the arrow keys.
+    Its point, if the handle has a name, is dragged, or moved by the arrow keys. With a pen the
+    pointer draws anywhere else, Enter sets the point, and Backspace takes one back; `on_msg` is
+    told {"stroke": [[x, y], …]}, {"point": [x, y]} or {"back": True}.
 
     handle  the name of the point; "" for none
     at      where the point is, [x, y]
@@ -67,6 +69,7 @@ class Plane(Living, anywidget.AnyWidget):
     at: Any = traitlets.List([0.0, 0.0]).tag(sync=True)
     said = traitlets.Unicode("").tag(sync=True)
     step = traitlets.Float(0.05).tag(sync=True)
+    pen = traitlets.Bool(False).tag(sync=True)
     alt = traitlets.Unicode("").tag(sync=True)
 
     def show(self, lines: Sequence[Stroke], alt: str) -> None:

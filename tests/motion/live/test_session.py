@@ -435,3 +435,25 @@ def test_an_event_says_its_numbers_as_a_person_reads_them(session):
     assert str(session.events[-1]) == "target: effector hand.l, position (0.3333, 0.959, -1.0)"
     session.by_hand = False
     assert str(session.events[-1]) == "by hand: by_hand False"
+
+
+def test_the_steps_of_a_tick_can_be_changed_undone_and_begun_again():
+    session = Session()
+    session.tick()
+    session.iterations = 3
+    assert session.settings()["iterations"] == session.iterations == 3
+    assert str(session.events[-1]) == "iterations: iterations 3"
+    one, three = Session(), Session(iterations=3)
+    for lone in (one, three):
+        for _ in range(20):
+            lone.tick()
+    assert three.error.mean() < one.error.mean()
+    session.undo()
+    assert session.iterations == 1
+    session.iterations = 2
+    session.begin_again()
+    assert session.iterations == 1
+    with pytest.raises(ValueError, match="iterations must be 1 or more"):
+        session.iterations = 0
+    with pytest.raises((ValueError, TypeError), match="iterations"):
+        session.iterations = "many"

@@ -10,7 +10,7 @@ from ikteach import dls_following, figures
 from ikteach.motion import gait
 from ikteach.motion.paths import quality
 from ikteach.motion.paths.perform import perform
-from ikteach.motion.paths.walk import NAMES, WALKS, Walk
+from ikteach.motion.paths.walk import NAMES, WALK_RATIO, WALKS, Walk, at_speed, natural
 
 WALKER = figures.walker()
 PHASES = np.linspace(0, 2 * pi, 400, endpoint=False)
@@ -119,3 +119,30 @@ def test_a_parameter_that_is_none_is_named():
 def test_only_who_has_such_limbs_can_walk():
     with pytest.raises(ValueError, match="none for 'hand'"):
         Walk().on(*figures.planar_arm(3))
+
+
+@pytest.mark.parametrize("speed", [0.6, 0.95, 1.3, 1.6])
+def test_a_walk_of_any_speed_has_a_stride_that_the_legs_allow(speed):
+    walk = at_speed(speed)
+    assert walk.speed == pytest.approx(speed)
+    assert walk.stride / 2 / walk.cadence == pytest.approx(WALK_RATIO)
+    assert 0.85 < walk.height < 0.95
+    assert walk.spare > 0
+    run = perform(walk, figures.walker(), "sdls", cycles=3)
+    assert run.error.mean() < 0.005
+    assert quality.slip(run, walk).max() < 0.01
+
+
+def test_a_stride_that_is_too_long_is_known_before_it_is_walked():
+    assert abs(natural.spare) < 0.005
+    spares = [natural.change(speed=speed).spare for speed in (1.3, 1.45, 1.6)]
+    assert spares == sorted(spares, reverse=True)
+    assert spares[-1] < -0.03
+    assert natural.change(speed=1.6, cadence=140).spare > -0.005
+    assert natural.change(speed=1.45, height=0.89).spare > 0
+
+
+@pytest.mark.parametrize("speed", [0.1, 3, float("nan"), -1])
+def test_a_speed_at_which_nobody_walks_is_refused(speed):
+    with pytest.raises(ValueError, match=r"speed|people walk"):
+        at_speed(speed)

@@ -71,3 +71,21 @@ def test_a_target_that_nothing_asks_for_lies_on_the_body(player):
     assert gaps[natural, names.index("knee.l")] == 0
     recorded = [*player.session.sessions].index("recorded")
     assert gaps[recorded, names.index("knee.l")] > 0
+
+
+def test_a_stride_that_is_too_long_is_said_and_what_follows_the_speed_mends_it(player):
+    control, walk = player.controls, player.session.sessions["natural"]
+    control["speed"].value = 1.6
+    assert player.status.said == (
+        "The legs are 8 cm too short for a stride of 1.71 m: the feet cannot be where the plan"
+        " wants them."
+    )
+    control["follows"].value = True
+    assert player.status.said == ""
+    assert walk.gait.spare > 0
+    assert control["cadence"].value == pytest.approx(walk.gait.cadence)
+    control["speed"].value = 1.0
+    assert walk.gait.cadence < 110
+    control["follows"].value = False
+    control["speed"].value = 1.6
+    assert player.status.said != ""

@@ -10,7 +10,9 @@ from ikteach import dls, figures, gait
 from ikteach.motion import clip, hold
 from ikteach.study.experiment import Round, starts
 from ikteach.study.trials import trials
-from ikteach.view.chapters.comparison import Ledger, TrialsPlayer, order_chart
+from ikteach.view.chapters.comparison import Ledger, Race, TrialsPlayer, order_chart
+from ikteach.view.chapters.gait import GaitPlayer, session_table
+from ikteach.view.stage.lengths import misses
 
 HUMAN = figures.human()
 
@@ -124,3 +126,28 @@ def test_a_ledger_is_a_table_whose_words_are_words():
     assert "≈ <b>depends on λ</b>, in 50% of 4 cells: 0.1 100%, 0.2 0%" in page
     assert "✗ <b>does not hold</b>, in 50% of 4 cells<" in page
     assert page.count("<tr>") == 3
+
+
+def test_a_direction_is_off_by_degrees_and_makes_metres_by_its_length():
+    walker = figures.walker()
+    player = GaitPlayer(figure=walker, slot=None)
+    race = Race(figure=walker, slot=None)
+    for one in (player, race):
+        for _ in range(5):
+            one.step()
+        one.report()
+    session = player.session
+    up = walker.effectors.names.index("pelvis.up")
+    phi = 2 * np.arcsin(session.error[up] / (2 * np.linalg.norm(walker.effectors.offsets[up])))
+    assert f"pelvis.up {np.degrees(phi):.1f}° ({100 * session.error[up]:.1f} cm)" in player.words
+    assert "<th>pelvis.up [°]</th>" in player._table.value
+    assert "<th>pelvis [°]</th>" not in player._table.value
+    rows = session_table(session)
+    mean = np.mean(
+        next(misses(walker.effectors, r.error)[:, up] for r in session.tracks().values())
+    )
+    assert f"{np.degrees(mean):.2f}" in rows
+    for text in (player._table.value, race._table.value, race.words):
+        assert "A direction that is off by φ counts as 2ℓ sin(φ/2)." in text
+    for one in (player, race):
+        one.close()

@@ -200,9 +200,9 @@ def test_a_curve_is_drawn_point_by_point(bench):
 
 def test_a_curve_of_one_point_is_refused_and_the_bench_goes_on(bench):
     control(bench, "along").click()
-    assert "needs two points" in bench.status.wrong
+    assert "needs two points" in bench.motion.pad.status.wrong
     control(bench, "motion").value = "running"
-    assert bench.status.wrong == ""
+    assert bench.session.gait.name == "running"
 
 
 def test_a_motion_that_is_given_is_among_the_motions(bench):

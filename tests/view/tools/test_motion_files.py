@@ -63,19 +63,33 @@ def test_a_recording_becomes_a_motion(files, tmp_path):
     assert files.session.error.mean() < 0.03
 
 
+ARM = """HIERARCHY
+ROOT shoulder
+{
+  OFFSET 0 0 0
+  CHANNELS 1 Zrotation
+}
+MOTION
+Frames: 1
+Frame Time: 0.1
+0
+"""
+
+
 @pytest.mark.parametrize(
     ("name", "content", "words"),
     [
         ("none", None, "there is no file"),
         (" ", None, "needs a file name"),
         ("cut", "HIERARCHY\nROOT hips\n{\n", "line 4"),
-        ("arm", None, "no joint of the recording is"),
+        ("arm", ARM, "no joint of the recording is its left upleg: 'shoulder'"),
+        ("short", None, "4 frames or more, not 1"),
     ],
 )
 def test_what_cannot_be_is_one_sentence(files, tmp_path, name, content, words):
     if content is not None:
         (tmp_path / f"{name}.bvh").write_text(content)
-    if name == "arm":  # a body without a person's bones
+    if name == "short":
         files.session.tick()
         files.name.value = name
         files.bvh.click()
