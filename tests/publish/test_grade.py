@@ -74,6 +74,10 @@ HOSTILE = {
     "imports the check": "from ikteach.course.exercises import ch00\n"
     "return ch00.hand_of(theta, lengths)",
     "runs a program": "import subprocess; subprocess.run(['touch', PLACE])",
+    "starts a program by the back door": "import os, sys, subprocess\n"
+    "sys.modules.pop('_posixsubprocess', 0)\nimport _posixsubprocess as p\n"
+    "p.fork_exec([b'/bin/rm', PLACE.encode()], [b'/bin/rm'], True, (), *[None] * 2, *[-1] * 6,"
+    " *os.pipe(), False, False, -1, None, None, None, -1, None, False)",
     "removes": "import os; os.remove(PLACE)",
     "removes all": "import shutil; shutil.rmtree(PLACE)",
     "writes": "open(PLACE, 'w').write('gone')",
