@@ -25,7 +25,7 @@ from ikteach.publish.grading.scheme import every_exercise
 ROOT = Path(__file__).parents[2]
 FULL = bool(os.environ.get("IKTEACH_FULL"))
 STUB = {"nbgrader": "# YOUR CODE HERE\n{}raise NotImplementedError()", "otter": "..."}
-CHAPTERS = ["00_figure", "05_dls", "08_comparison", "10_reach"]
+CHAPTERS = sorted(path.stem for path in (ROOT / "notebooks").glob("[0-9]*.ipynb"))
 
 
 @pytest.fixture(scope="module", params=["nbgrader", "otter"])
@@ -57,7 +57,7 @@ def points(cells: list[str], monkeypatch: pytest.MonkeyPatch, folder: Path) -> i
     return passed
 
 
-@pytest.mark.parametrize("chapter", CHAPTERS)
+@pytest.mark.parametrize("chapter", CHAPTERS if FULL else ["00_figure", "05_dls"])
 def test_the_solutions_have_all_points_and_stubs_none(
     built: Any, chapter: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -67,7 +67,7 @@ def test_the_solutions_have_all_points_and_stubs_none(
     assert most >= 2
     assert points(cells, monkeypatch, tmp_path) == most
     assert points([without(source, tool) for source in cells], monkeypatch, tmp_path) == 0
-    wrong = [re.sub(r"return .*", "return 3.5", source) for source in cells]
+    wrong = [spoiled(source) if "SOLUTION" in source else source for source in cells]
     assert points(wrong, monkeypatch, tmp_path) == 0
 
 

@@ -5,6 +5,7 @@ import os
 import re
 import shutil
 import sys
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -73,6 +74,10 @@ HOSTILE = {
     "imports the check": "from ikteach.course.exercises import ch00\n"
     "return ch00.hand_of(theta, lengths)",
     "runs a program": "import subprocess; subprocess.run(['touch', PLACE])",
+    "starts a program by the back door": "import os, sys, subprocess\n"
+    "sys.modules.pop('_posixsubprocess', 0)\nimport _posixsubprocess as p\n"
+    "p.fork_exec([b'/bin/rm', PLACE.encode()], [b'/bin/rm'], True, (), *[None] * 2, *[-1] * 6,"
+    " *os.pipe(), False, False, -1, None, None, None, -1, None, False)",
     "removes": "import os; os.remove(PLACE)",
     "removes all": "import shutil; shutil.rmtree(PLACE)",
     "writes": "open(PLACE, 'w').write('gone')",
@@ -353,6 +358,10 @@ PLACES = {  # of a file -> student and number
     "submissions/iverson_LATE_19_96_a-1.ipynb": ("iverson", "19"),
     "Jose\u0301/hw_1_2_final.ipynb": ("Jos\u00e9", ""),
     "kay.ipynb": ("kay", ""),
+    "packed.zip:Lee_4720_assignsubmission_file_/a.ipynb": ("Lee", "4720"),
+    "Max_4721_assignsubmission_file_/hw.zip:work/a.ipynb": ("Max", "4721"),
+    "noether_21_95_hw.zip:/hw/a.ipynb": ("noether", "21"),
+    "ola/one.zip:Lee_4720_assignsubmission_file_/x/a.ipynb": ("ola", ""),
     "__MACOSX/._a.ipynb": None,
     ".git/a.ipynb": None,
 }
@@ -360,9 +369,14 @@ PLACES = {  # of a file -> student and number
 
 def test_platforms_name_their_students(tmp_path: Path) -> None:
     for place in PLACES:
-        path = tmp_path / place
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(notebook(RIGHT))
+        path, _, inside = str(tmp_path / place).partition(":")
+        Path(path).parent.mkdir(parents=True, exist_ok=True)
+        if inside:
+            with zipfile.ZipFile(path, "w") as archive:
+                archive.writestr(inside, notebook(RIGHT))
+                archive.writestr("__MACOSX/._a.ipynb", "")
+        else:
+            Path(path).write_text(notebook(RIGHT))
     (tmp_path / "gaugauss_17_99_predictions.json").write_text(record(RIGHT, True))
     found, skipped = hand_ins(tmp_path)
     assert not skipped
@@ -386,17 +400,21 @@ def test_what_is_read_of_a_notebook(tmp_path: Path) -> None:
     (tmp_path / "ada.ipynb").write_text(json.dumps({"cells": SAVED}), encoding="utf-8-sig")
     (tmp_path / "old.ipynb").write_text(json.dumps({"worksheets": [{"cells": SAVED}]}))
     (tmp_path / "zip.zip").write_bytes(b"PK")
+    with zipfile.ZipFile(tmp_path / "none.zip", "w") as archive:
+        archive.writestr("a.txt", "")
     (tmp_path / "deep.ipynb").write_text(notebook({"00.hand": f"hand = {'-' * 9000}1"}))
     found, skipped = hand_ins(tmp_path)
     assert {one.student: sorted(one.sources) for one in found} == {
         "ada": ["00.hand"],
         "deep": ["00.hand"],
+        "none": [],
         "old": [],
         "zip": [],
     }
     assert skipped == {
         "old.ipynb": "it is no notebook of Jupyter's version 4",
-        "zip.zip": "unpack it first",
+        "none.zip": "it cannot be unpacked (it holds nothing to grade)",
+        "zip.zip": "it cannot be unpacked (File is not a zip file)",
     }
 
 

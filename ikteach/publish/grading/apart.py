@@ -16,6 +16,7 @@ The hook stops what Python asks for; who finds a hole in the interpreter is stop
 import builtins
 import contextlib
 import ctypes
+import importlib
 import os
 import pickle
 import signal
@@ -44,6 +45,7 @@ PACKAGE = Path(__file__).parents[2]
 READABLE = [sys.prefix, sys.base_prefix, str(PACKAGE), str(Path(np.__file__).parents[1])]
 DEVICES = ("/dev/null/", "/dev/urandom/", "/usr/share/zoneinfo/")
 SECRET = ("ikteach.course.solutions", "ikteach.course.exercises")
+STARTING = "_posixsubprocess"  # starts programs, and the hook is not asked
 # Nothing that has this in its path; the last three would hide it.
 HIDDEN = ("/course/solutions/", "/course/exercises/", "/../", "/./", "//")
 WRITING = os.O_WRONLY | os.O_RDWR | os.O_APPEND | os.O_CREAT | os.O_TRUNC
@@ -158,6 +160,7 @@ def _serve(source: str, requests: BinaryIO, replies: BinaryIO) -> None:
     names: dict[str, Any] = {"__name__": "__main__"}
     sys.argv = [""]
     _limit()
+    _start_no_programs()
     sys.addaudithook(guard(os.getcwd()))
 
     def bind() -> Any:
@@ -197,6 +200,14 @@ def unchanged(before: Any, after: Any) -> bool:
     return bool(np.array_equal(before, after, equal_nan=np.asarray(before).dtype.kind == "f"))
 
 
+def _start_no_programs() -> None:
+    """Leave `subprocess` to be imported, and take away what it starts programs with."""
+    with contextlib.suppress(ImportError):  # Windows
+        subprocess: Any = importlib.import_module("subprocess")
+        starting: Any = importlib.import_module(STARTING)
+        starting.fork_exec = subprocess._fork_exec = None
+
+
 def _limit() -> None:
     """Bound what this process may take."""
     try:
@@ -232,7 +243,7 @@ def guard(home: str) -> Callable[[str, tuple[Any, ...]], None]:
     read = own + _letters(READABLE) + DEVICES
     listed = read + _letters(sys.path)
     written = own + DEVICES[:1]
-    files, hidden, allowed, secret = FILES, HIDDEN, ALLOWED, SECRET
+    files, hidden, allowed, secret = FILES, HIDDEN, ALLOWED, (*SECRET, STARTING)
     writing, writes, most, after = WRITING, count(1), MOST_WRITTEN, next
     error, kind, word, encoded, number = PermissionError, type, str, bytes, int
     start, lower, turned, text = str.startswith, str.lower, str.replace, bytes.decode
@@ -254,7 +265,7 @@ def guard(home: str) -> Callable[[str, tuple[Any, ...]], None]:
                 if part in place:
                     raise error("an answer may not read the solutions")
         elif event == "import" and start(arguments[0], secret):
-            raise error("an answer may not read the solutions")
+            raise error(f"an answer may not import {arguments[0]}")
         elif event == "object.__getattr__" and kind(arguments[1]) is word:
             if arguments[1] == "tb_frame":  # it may be one of this function, with its names
                 raise error("an answer may not look at frames of errors")

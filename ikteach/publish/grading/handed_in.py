@@ -8,8 +8,10 @@ What a file says of itself (`passed: true`) is a claim and no mark.
 import ast
 import re
 import symtable
+import zipfile
 from collections.abc import Iterable, Iterator
-from pathlib import Path
+from pathlib import Path, PurePosixPath
+from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 from unicodedata import normalize
 
@@ -21,6 +23,9 @@ from ikteach.publish.collect import files_of
 from ikteach.publish.delivery import LARGEST_NOTEBOOK
 
 KEY = re.compile(r"""\bcheck\(\s*["'](\d\d\.\w+)["']""")
+READ = (".json", ".ipynb")
+MOST_PACKED = 2000  # files of an archive
+LARGEST_PACKED = 500 * 2**20  # bytes of them
 LONGEST = 100_000  # letters of an answer
 MOST_CELLS = 1000
 LEFT_BY_MACOS = "__MACOSX"  # a folder that it puts into archives
@@ -43,39 +48,86 @@ class HandIn(NamedTuple):
     claims: set[str]
 
 
+class HandedFile(NamedTuple):
+    """A file to read, what it is called within the folder, and why it cannot be read, or ""."""
+
+    path: Path
+    name: Path
+    hindrance: str = ""
+
+
 def hand_ins(folder: Path) -> tuple[list[HandIn], dict[str, str]]:
     """Read what is in a folder, and why not."""
     if not folder.is_dir():
         packed = ": unpack it first" if folder.suffix.lower() == ".zip" else ""
         raise NotADirectoryError(f"{folder} is not a folder{packed}")
-    files = [
-        (path, path.relative_to(folder), hindrance)
-        for path, hindrance in files_of(folder, (".json", ".zip", ".ipynb"))
-        if LEFT_BY_MACOS not in path.parts
-    ]
-    canvas = _of_canvas(name for _, name, _ in files)
     found: dict[str, HandIn] = {}
     skipped: dict[str, str] = {}
-    for place in _folders(folder):  # also who has handed in nothing
-        if place.relative_to(folder) not in canvas:
-            inner = [one.name for one in _folders(place) if MOODLE.fullmatch(one.name)]
-            for student in inner or [place.name]:
-                _of(found, student)
-    for path, name, hindrance in files:
-        parts = (*name.parts[:-1], name.stem)
-        moodle = (part for part in parts if MOODLE.fullmatch(part))
-        one = _of(found, name.stem if name.parent in canvas else next(moodle, parts[0]))
-        try:
-            if hindrance:
-                raise ValueError(hindrance)
-            if path.suffix.lower() == ".ipynb":
-                for key, source in answers(_cells(read_json(path, LARGEST_NOTEBOOK))).items():
-                    one.sources.setdefault(key, []).append(source)
-            else:
-                _kept(one, valid(read_json(path, LARGEST_ANSWERS)))
-        except (OSError, ValueError, RecursionError) as error:
-            skipped[str(name)] = bounded(str(error))
+    with TemporaryDirectory() as room:
+        files = list(_files(folder, Path(room)))
+        canvas = _of_canvas(file.name for file in files)
+        for place in _folders(folder):  # also who has handed in nothing
+            if place.relative_to(folder) not in canvas:
+                inner = [one.name for one in _folders(place) if MOODLE.fullmatch(one.name)]
+                for student in inner or [place.name]:
+                    _of(found, student)
+        for path, name, hindrance in files:
+            parts = (*name.parts[:-1], name.stem)
+            moodle = (part for part in parts[:2] if MOODLE.fullmatch(part))
+            one = _of(found, name.stem if name.parent in canvas else next(moodle, parts[0]))
+            try:
+                if hindrance:
+                    raise ValueError(hindrance)
+                _read(one, path)
+            except (OSError, ValueError, RecursionError) as error:
+                skipped[str(name)] = bounded(str(error))
     return sorted(found.values()), skipped
+
+
+def _read(one: HandIn, path: Path) -> None:
+    if path.suffix.lower() == ".ipynb":
+        for key, source in answers(_cells(read_json(path, LARGEST_NOTEBOOK))).items():
+            one.sources.setdefault(key, []).append(source)
+    else:
+        _kept(one, valid(read_json(path, LARGEST_ANSWERS)))
+
+
+def _files(folder: Path, room: Path) -> Iterator[HandedFile]:
+    """List what was handed in, also in archives, which are unpacked into `room`."""
+    for path, hindrance in files_of(folder, (*READ, ".zip")):
+        file = HandedFile(path, path.relative_to(folder), hindrance)
+        if LEFT_BY_MACOS in path.parts:
+            continue
+        if path.suffix.lower() != ".zip" or path.is_symlink():
+            yield file
+            continue
+        try:
+            yield from _unpacked(file, room)
+        except (OSError, ValueError, RuntimeError, zipfile.BadZipFile) as error:
+            yield file._replace(hindrance=f"it cannot be unpacked ({error})")
+
+
+def _unpacked(file: HandedFile, room: Path) -> list[HandedFile]:
+    """Unpack what is to be read of an archive; ValueError if that is too much."""
+    with zipfile.ZipFile(file.path) as archive:
+        names = {one: PurePosixPath(one.filename) for one in archive.infolist()}
+        wanted = [
+            one
+            for one, name in names.items()
+            if name.suffix.lower() in READ
+            and not any(part.startswith((".", LEFT_BY_MACOS)) for part in name.parts)
+        ]
+        if not wanted:
+            raise ValueError("it holds nothing to grade")
+        if len(wanted) > MOST_PACKED or sum(one.file_size for one in wanted) > LARGEST_PACKED:
+            raise ValueError("it holds too much")
+        files = []
+        for one in wanted:
+            place = room / f"{len(list(room.iterdir()))}{names[one].suffix.lower()}"
+            place.write_bytes(archive.read(one))
+            inside = Path(*names[one].relative_to(names[one].anchor).parts)
+            files.append(HandedFile(place, file.name.with_suffix("") / inside))
+    return files
 
 
 def _folders(place: Path) -> list[Path]:
@@ -89,12 +141,13 @@ def _folders(place: Path) -> list[Path]:
 
 
 def _of_canvas(names: Iterable[Path]) -> set[Path]:
-    """Find the folders inside that hold nothing but files as Canvas names them."""
+    """Find the outer folders that hold nothing but files as Canvas names them."""
     numbers: dict[Path, set[str]] = {}
     for name in names:
         match = CANVAS.fullmatch(name.stem)
         numbers.setdefault(name.parent, set()).add(match["id"] if match else "")
-    return {place for place, found in numbers.items() if "" not in found and len(found) > 1}
+    outer = {place: found for place, found in numbers.items() if len(place.parts) == 1}
+    return {place for place, found in outer.items() if "" not in found and len(found) > 1}
 
 
 def _of(found: dict[str, HandIn], place: str) -> HandIn:
