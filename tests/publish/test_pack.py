@@ -146,6 +146,17 @@ def test_answers_are_in_the_notes_alone(chapter: Chapter, decks: dict[str, str])
             assert said not in slides
 
 
+def test_a_question_stands_below_what_it_is_about(decks: dict[str, str]) -> None:
+    begins = {
+        "00": "An arm lies in a plane.",
+        "02": "An arm of two links is stretched out",
+        "12": "A shoulder has three hinges in one place",
+    }
+    for number, said in begins.items():
+        asked = re.findall(r'<section class="slide ask".*?</section>', decks[number], re.DOTALL)
+        assert said in words(asked[0])
+
+
 def test_slides_have_pictures_and_ask_nothing_of_a_network(decks: dict[str, str]) -> None:
     for chapter in COURSE:
         page = decks[chapter.number]
@@ -180,7 +191,7 @@ def test_links_open_figures_in_states_that_they_have(decks: dict[str, str]) -> N
 
 def test_a_state_is_written_as_an_address() -> None:
     state = {"method": "cramer, mended", "forward": True, "cursor": [0.3, -0.2, 0.3], "speed": 9}
-    assert query(state) == "method=cramer%2C%20mended&forward=true&cursor=0.3%2C-0.2%2C0.3&speed=9"
+    assert query(state) == "method=cramer,%20mended&forward=on&cursor=0.3,-0.2,0.3&speed=9"
     assert lecture_page("GaitPlayer") == "gait.ipynb"
     assert lecture_page("SvdBench") is None
 

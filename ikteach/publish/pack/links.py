@@ -36,12 +36,13 @@ def link(figure: Any, notebook: str, setting: Mapping[str, Any], words: Markup) 
 
 def query(setting: Mapping[str, Any]) -> str:
     """Write a state as an address has it: `method=sdls&motion=running`."""
-    return urlencode({name: _written(value) for name, value in setting.items()}, quote_via=quote)
+    pairs = {name: _written(value) for name, value in setting.items()}
+    return urlencode(pairs, safe=",", quote_via=quote)
 
 
 def _written(value: Any) -> str:
     if isinstance(value, bool):
-        return "true" if value else "false"
+        return "on" if value else "off"
     return ",".join(map(str, value)) if isinstance(value, list | tuple) else str(value)
 
 

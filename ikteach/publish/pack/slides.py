@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from ikteach.markup import Markup
 from ikteach.publish.pack.html import as_list, in_line, inlined, rendered
-from ikteach.publish.pack.links import link
+from ikteach.publish.pack.links import lecture_page, link
 from ikteach.publish.pack.parts import Asked, Chapter, Computed, Exit, Open, Stub, Told, ToTry
 from ikteach.publish.pack.plan import Block, plan
 from ikteach.publish.pack.stills import still
@@ -24,6 +24,9 @@ WORDS = 80  # on a slide, about: a longer text goes on on the next
 WIDE = 1.4  # a picture wider than this has more of the slide
 FORMULA = re.compile(r"\$\$.+?\$\$", re.DOTALL)
 PUNCH = re.compile(r"\*\*([^*]{15,}[.?!])\*\*")
+BUTTONS = (
+    "\n\nThe links open the notebook; there run this cell, and press *Show me* and the number."
+)
 CRITICAL = "> **Read critically.**"
 SENTENCE = re.compile(r"(?<=[.?!:])\s+(?=[A-Z$])")
 
@@ -64,10 +67,12 @@ class Deck:
         for block in plan(chapter):
             self._blocks |= dict.fromkeys(block.cells, block)
         self._heading, self._demo = chapter.title, told.demos.get(chapter.number)
+        self._before = ""  # the text right before a part
         self.slides = [*self._opening()]
         for part in chapter.parts:
             if isinstance(part, Told):
                 self._prose(part)
+                self._before = part.text
             else:
                 self.slides += self._made(part)
 
@@ -138,7 +143,8 @@ class Deck:
         if belief := self._told.beliefs.get(part.key):
             note += f"\n\n**Wrong belief:** {belief.belief}. **Students say:** “{belief.says}”"
         notes = self._notes(part.cell, note)
-        return Slide("ask", in_line(part.question), _choices(part), notes, part.cell)
+        body = rendered(_situation(self._before)) + _choices(part)
+        return Slide("ask", in_line(part.question), body, notes, part.cell)
 
     def _shown(self, part: Computed) -> Slide:
         asked = {one.key: one for one in self.chapter.of(Asked)}
@@ -165,7 +171,8 @@ class Deck:
         image = Markup('<figure><img src="{}" alt="{}"></figure>').format(
             inlined(picture.png), picture.alt
         )
-        notes = self._notes(part.cell, f"The picture is of the first. {picture.alt}")
+        buttons = "" if lecture_page(type(figure).__name__) else BUTTONS
+        notes = self._notes(part.cell, f"The picture is of the first. {picture.alt}{buttons}")
         if self._demo is not None:
             ask, do, seen, finds = self._demo
             told = (
@@ -236,6 +243,17 @@ def _choices(part: Asked) -> Markup:
         )
     options = as_list(map(in_line, part.choices), "ol")
     return Markup("<p>Put them in order:</p>") + options if part.ranking else options
+
+
+def _situation(text: str) -> str:
+    """Take from the text before a question what it is about: plain paragraphs, not too many."""
+    plain = [
+        paragraph
+        for paragraph in text.split("\n\n")
+        if paragraph.strip() and paragraph[0] not in "#*|>-![" and "$$" not in paragraph
+    ]
+    whole = "\n\n".join(plain)
+    return whole if len(whole.split()) <= WORDS else plain[-1]
 
 
 def _led(text: str, formula: str) -> str:
