@@ -32,7 +32,7 @@ class Markup(str):
 
 
 def minus(number: str) -> str:
-    """Write a number with the sign of minus, which is as wide as that of plus."""
+    """Write a number with a minus sign, not a hyphen."""
     return number.replace("-", "−")
 
 

@@ -1,1 +1,1 @@
-"""The course as a server shows it: JupyterLab, and figures as web pages without code."""
+"""The course as a server shows it: JupyterLab, pages without code, a class's answers."""

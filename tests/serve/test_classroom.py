@@ -286,6 +286,17 @@ def test_stuck_is_who_tries_often_or_long(tmp_path: Path) -> None:
     assert {who["name"] for who in named["who"]} == {"long", "often", "odd"}
 
 
+def test_students_whose_long_names_look_alike_are_two(tmp_path: Path) -> None:
+    for middle in "ab":
+        name = f"{'x' * 70}{middle}{'y' * 70}"
+        write(tmp_path / name / "predictions.json", answers())
+    found = counted(tmp_path, names=True)
+    assert found["students"] == 2
+    assert max(map(len, found["predictions"][0]["who"])) <= 60
+    write(tmp_path / os.fsdecode(b"\xff\n") / "predictions.json", answers())
+    assert json.dumps(counted(tmp_path, names=True)).isascii()  # what the page is sent
+
+
 def test_names_come_only_if_they_are_asked_for(tmp_path: Path) -> None:
     write(tmp_path / "grace" / "predictions.json", answers())
     write(tmp_path / "hopper.json", hand("Wrong."))
@@ -396,6 +407,9 @@ def test_the_command_says_where_the_page_is_and_what_hinders(
     )
     assert cli.main(["class", str(tmp_path / "no"), "--no-browser"]) == 1
     assert "is not a folder" in capsys.readouterr().err
+    elsewhere = ["--notebooks", str(tmp_path / "mine")]
+    assert cli.main(["class", str(tmp_path), "--no-browser", *elsewhere]) == 1
+    assert "mine is not a folder" in capsys.readouterr().err
     assert cli.main(["class", str(tmp_path), "--no-browser", "--", "--x"]) == 1
     assert "leave out" in capsys.readouterr().err
     assert cli.main(["clas", str(tmp_path)]) == 1

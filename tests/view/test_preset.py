@@ -98,6 +98,13 @@ def test_a_link_leads_back_to_the_state_in_which_it_was_made(name: str) -> None:
     again.close()
 
 
+def test_a_figure_turned_by_its_ball_is_linked_so() -> None:
+    bench = Workbench()
+    bench.object.ball.azimuth = 50.0
+    assert link_of(bench) == "azimuth=50"
+    bench.close()
+
+
 def test_a_link_tells_what_was_chosen_and_not_what_follows_from_it() -> None:
     bench = preset(Workbench(), "speed=9.5&motion=running&figures=side&method=sdls&dark=on")
     wanted = "method=sdls&motion=running&figures=all,+side+by+side&dark=on&speed=9.5"

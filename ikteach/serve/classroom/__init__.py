@@ -72,6 +72,8 @@ class Counts:
         from ikteach.serve.classroom.asked import asked_in
         from ikteach.serve.classroom.folder import ClassFolder
 
+        if notebooks is not None and not notebooks.is_dir():
+            raise NotADirectoryError(f"{notebooks} is not a folder")
         self.folder = ClassFolder(folder)
         self._asked = asked_in(notebooks or find_course().notebooks)
         self._students, self._at = self.folder.look(), time.monotonic()

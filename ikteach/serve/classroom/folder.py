@@ -68,7 +68,7 @@ class ClassFolder:
         for student, place, info in self._places():
             seen = self._seen[place] = self._read(place, info, known.get(place, Seen(())))
             if seen.trouble:
-                self.troubles[_name("/".join(place))] = seen.trouble
+                self.troubles["/".join(place)] = seen.trouble
             if not seen.counted:
                 left_out.add(student)
             if seen.answers is not None:
@@ -78,19 +78,19 @@ class ClassFolder:
     def _places(self) -> Iterator[tuple[str, Place, os.stat_result]]:
         """Find the files: student, place, and what the system says of it."""
         for one in self._entries(self.folder, STUDENTS):
-            if one.is_dir(follow_symlinks=False):
+            if _is_folder(one):
                 for place in self._of_student(one):
-                    with suppress(OSError):
+                    with suppress(OSError):  # most have none there
                         info = os.stat(self.folder.joinpath(*place), follow_symlinks=False)
-                        yield _name(one.name), place, info
+                        yield one.name, place, info
             elif one.name.lower().endswith(".json"):
                 with suppress(OSError):
-                    yield _name(one.name[:-5]), (one.name,), one.stat(follow_symlinks=False)
+                    yield one.name[:-5], (one.name,), one.stat(follow_symlinks=False)
 
     def _of_student(self, home: os.DirEntry[str]) -> Iterator[Place]:
         yield home.name, FILE
         for one in self._entries(Path(home.path), PLACES):
-            if one.is_dir(follow_symlinks=False):
+            if _is_folder(one):
                 yield home.name, one.name, FILE
 
     def _entries(self, folder: Path, most: int) -> list[os.DirEntry[str]]:
@@ -99,10 +99,10 @@ class ClassFolder:
             with os.scandir(folder) as entries:
                 seen = sorted((e for e in entries if e.name[0] != "."), key=lambda e: e.name)
         except OSError as error:
-            self.troubles[_name(folder.name)] = f"it cannot be read ({error.strerror})"
+            self.troubles[folder.name] = f"it cannot be read ({error.strerror})"
             return []
         if len(seen) > most:
-            self.troubles[_name(folder.name)] = f"{len(seen) - most} of its entries are left out"
+            self.troubles[folder.name] = f"{len(seen) - most} of its entries are left out"
         return seen[:most]
 
     def _read(self, place: Place, info: os.stat_result, before: Seen) -> Seen:
@@ -186,5 +186,8 @@ def _merge(into: Answers, new: Answers) -> None:
                 into[kind][key] = entry
 
 
-def _name(text: str) -> str:
-    return bounded(text, 60)
+def _is_folder(entry: os.DirEntry[str]) -> bool:
+    try:
+        return entry.is_dir(follow_symlinks=False)
+    except OSError:  # on a disk in a network, which has to ask
+        return False

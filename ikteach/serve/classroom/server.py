@@ -51,7 +51,7 @@ class Guarded(RequestHandler):
 
     @property
     def cookie(self) -> str:
-        """The name of the cookie; pages on other ports have theirs."""
+        """The name of the cookie; other ports have theirs."""
         return f"ikteach-class-{self.settings['port']}"
 
     def write_error(self, status_code: int, **about: Any) -> None:

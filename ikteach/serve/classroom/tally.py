@@ -16,7 +16,7 @@ from typing import Any
 from ikteach.course.checking import NOT_YET
 from ikteach.course.questions import fits, written
 from ikteach.files import bounded
-from ikteach.markup import visible
+from ikteach.markup import brief, visible
 from ikteach.serve.classroom.asked import Asked, Prediction
 from ikteach.serve.classroom.folder import Answers
 
@@ -62,9 +62,9 @@ def tally(
     }  # fmt: skip
     if names:
         for one in found["predictions"]:
-            one["who"] = sorted(open_[one["key"]])
-            one["missing"] = sorted(students.keys() - open_[one["key"]].keys())
-        found["named"] = [f"{name}: {why}" for name, why in troubles.items()]
+            one["who"] = _named(open_[one["key"]])
+            one["missing"] = _named(students.keys() - open_[one["key"]].keys())
+        found["named"] = [f"{brief(name)}: {visible(why)}" for name, why in troubles.items()]
     return found
 
 
@@ -147,7 +147,7 @@ def _exercise(key: str, tried: Mapping[str, Any], now: datetime, names: bool) ->
     rows: list[dict[str, Any]] = []
     for whose in sorted(kinds.values(), key=len, reverse=True):
         said = Counter(_finding(wrong[who]) for who in whose).most_common(1)[0][0]
-        more = {"who": sorted(whose), "example": wrong[whose[0]]["sentence"]} if names else {}
+        more = {"who": _named(whose), "example": _sentence(wrong[whose[0]])} if names else {}
         rows.append({"label": said, "count": len(whose)} | more)
     if not names:
         alone = sum(row["count"] == 1 for row in rows)
@@ -161,7 +161,7 @@ def _exercise(key: str, tried: Mapping[str, Any], now: datetime, names: bool) ->
     if names:
         longest_first = sorted(stuck, key=lambda who: -_minutes(stuck[who], now))
         found["who"] = [
-            {"name": who, "minutes": _minutes(stuck[who], now), "tries": _tries(stuck[who])}
+            {"name": brief(who), "minutes": _minutes(stuck[who], now), "tries": _tries(stuck[who])}
             for who in longest_first
         ]
     return found
@@ -174,7 +174,7 @@ def finding_kind(finding: str) -> str:
 
 def _finding(entry: Mapping[str, Any]) -> str:
     """Return what the check says, without what the student wrote."""
-    text = CODE.sub("…", RAISED.sub(r"\1", visible(str(entry["sentence"] or ""))))
+    text = CODE.sub("…", RAISED.sub(r"\1", _sentence(entry)))
     return bounded(" ".join(text.split()), 160)
 
 
@@ -184,7 +184,15 @@ def _is_stuck(entry: Mapping[str, Any], now: datetime) -> bool:
 
 
 def _not_yet(entry: Mapping[str, Any]) -> bool:
-    return str(entry["sentence"] or "").startswith(NOT_YET)
+    return _sentence(entry).startswith(NOT_YET)
+
+
+def _sentence(entry: Mapping[str, Any]) -> str:
+    return visible(str(entry["sentence"] or ""))
+
+
+def _named(students: Iterable[str]) -> list[str]:
+    return [brief(name) for name in sorted(students)]
 
 
 def _tries(entry: Mapping[str, Any]) -> int:

@@ -50,6 +50,7 @@ def _options(argv: list[str]) -> tuple[argparse.Namespace, list[str]]:
         "       %(prog)s build student|instructor|html FOLDER\n"
         "       %(prog)s site FOLDER [--pyodide FOLDER|ADDRESS]\n"
         "       %(prog)s lecture [FOLDER]\n"
+        "       %(prog)s class FOLDER\n"
         "       %(prog)s collect FOLDER",
         description="Open the course on inverse kinematics in JupyterLab.",
         allow_abbrev=False,

@@ -178,6 +178,7 @@ class ObjectPanel(Panel):
                 super(ObjectPanel, self).put(
                     azimuth=self.ball.azimuth, elevation=self.ball.elevation
                 )
+                self.turns.ask(change["name"])
                 turned(change["new"])
 
         self.ball.observe(by_ball, ["azimuth", "elevation"])
