@@ -13,7 +13,7 @@ from ikteach.motion.mix import Mix
 from ikteach.motion.path import Motion
 from ikteach.solvers import SOLVERS, Solver
 from ikteach.view.chapters.gait import session_table, session_words
-from ikteach.view.live.bands import LAST, OFTEN, Bands, last_stride
+from ikteach.view.live.bands import OnTheNorm
 from ikteach.view.live.live import Live
 from ikteach.view.live.panel import Act, Does, Panel, button
 from ikteach.view.live.strips import Strips
@@ -30,7 +30,6 @@ from ikteach.view.widgets.layout import Arranged
 from ikteach.view.widgets.prose import Prose
 
 ROOM = np.array([1.6, 1.8, 1.6])  # [m] how far from the pelvis a target may be put
-SHOWN, NORM = "shown", "Hip, knee and ankle on the norm's band"
 OPTIONS = [name for name in SESSION if name not in ("figure", "methods")] + ["folder", "slot"]
 
 
@@ -41,7 +40,7 @@ class Workbench(Live):
     and may be changed from cells. To run the cell again closes the workbench that it made before.
     Files go to `folder`.
 
-    scene, targets, recorder, glass   its parts
+    scene, targets, recorder, glass, norm   its parts
     panels     {title: panel}, whose `controls` are the widgets by name
     replay     the run that is looked at, or None
     """
@@ -53,10 +52,10 @@ class Workbench(Live):
         session = _session(options)
         super().__init__(session, scene_of(session, ONE), slot, Strips(session))
         self.replay: Replay | None = None
-        self.figures = ONE
-        self.targets = self._targets()
+        self.figures, self.targets = ONE, self._targets()
         self.recorder = Recorder(session, folder=folder, slot=None)
         self.glass = Glass(session, stop=self.pause, show=self.draw, slot=None)
+        self.norm = OnTheNorm(session)
         self.keeper = Keeper(session, self._look_at, folder=folder, slot=None)
         self.motion = MotionPanel(session, self._acting)
         self.files = MotionFiles(session, self._take, folder=folder, slot=None)
@@ -76,13 +75,9 @@ class Workbench(Live):
             titles=[*self.panels, "Recording", "One iteration, magnified"],
             selected_index=0,
         )
-        self.bands = Bands([SHOWN])
-        self._norm = widgets.Accordion([self.bands], titles=[NORM], selected_index=None)
-        self._norm.observe(self.guarded(lambda _: self._draw_bands()), "selected_index")
-        self._drawn = -1  # ticks, when the bands were drawn
         self._table, self._aside = Prose(), widgets.VBox()  # aside: a run that is looked at
         self._arranged = Arranged(self._stage(), [self._aside, self._drawer, self._table])
-        self.children = [self._arranged, self.status, self.strips, self._norm]
+        self.children = [self._arranged, self.status, self.strips, self.norm]
         self.view.straighten()
         self._agree()
         self.report()
@@ -133,14 +128,7 @@ class Workbench(Live):
             **self.view.about(theta),
         )
 
-        if abs(session.ticks - self._drawn) >= OFTEN:
-            self._draw_bands()
-
-    def _draw_bands(self) -> None:
-        """Draw hip, knee and ankle on the norm's band, while somebody looks at them."""
-        if self._norm.selected_index == 0:
-            self._drawn = self.session.ticks
-            self.bands.draw({SHOWN: last_stride(self.session, LAST)})
+        self.norm.follow()
 
     def report(self) -> None:
         """Bring words and tables up to date."""

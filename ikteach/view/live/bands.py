@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+import ipywidgets as widgets
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -17,6 +18,7 @@ from ikteach.view.stage.colours import effector_colour
 from ikteach.view.widgets.picture import Picture
 
 JOINTS = {"hip": (-30, 60), "knee": (-5, 90), "ankle": (-50, 40)}  # and the axis [degrees]
+SHOWN = "shown"  # the name of its one walk
 OFTEN = 6  # ticks from one picture of the angles to the next
 LAST = 150  # ticks that are measured
 CYCLE = np.arange(51) / 50
@@ -96,6 +98,30 @@ class Bands(Picture):
         """Find how far angles are from the norm, (3,) [degrees], as root mean squares."""
         norm = np.array([np.interp(share, CYCLE, self._means[joint]) for joint in JOINTS])
         return np.asarray(np.sqrt(np.mean((angles.T - norm) ** 2, axis=1)))
+
+
+class OnTheNorm(widgets.Accordion):  # type: ignore[misc]
+    """The bands of a session, to be unfolded.
+
+    They have the method that is shown, and are drawn while they are unfolded.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session, self._drawn = session, 0
+        self.bands = Bands([SHOWN])
+        title = "Hip, knee and ankle on the norm's band"
+        super().__init__([self.bands], titles=[title], selected_index=None)
+        self.observe(lambda _: self._draw(), "selected_index")
+
+    def follow(self) -> None:
+        """Draw what the session does, a few times a second."""
+        if abs(self._session.ticks - self._drawn) >= OFTEN:
+            self._draw()
+
+    def _draw(self) -> None:
+        if self.selected_index == 0:
+            self._drawn = self._session.ticks
+            self.bands.draw({SHOWN: last_stride(self._session, LAST)})
 
 
 def _words(off: Mapping[str, Array]) -> str:

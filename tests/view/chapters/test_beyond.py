@@ -47,7 +47,7 @@ def test_every_control_acts_and_each_walk_has_its_line(player):
         player.step()
         player.draw()
         assert player.status.wrong == "", name
-        if name not in ("view", "ground"):
+        if name not in ("view", "ground", "skeleton"):
             assert player.session.sessions["natural"].settings() != before, name
     player.report()
 
@@ -60,6 +60,22 @@ def test_all_stand_on_one_floor(player):
     heights = player.scene.now.targets[:, soles, 1].min(axis=1) - player.scene.now.floor
     assert abs(heights).max() < 0.12
     assert player.scene.now.floor == player.session.sessions["natural"].floor
+
+
+def test_the_recorded_skeleton_walks_through_the_figure_that_follows_it(player):
+    player.controls["skeleton"].value = True
+    for _ in range(60):
+        player.session.tick()
+    player.draw()
+    now, names = player.scene.now, [*player.session.sessions]
+    assert [len(bones) > 20 for bones in now.skeletons] == [name == "recorded" for name in names]
+    i = names.index("recorded")
+    knee = player.session.sessions["recorded"].tree.index("knee.l")
+    far = np.linalg.norm(now.skeletons[i] - now.positions[i, knee], axis=-1)
+    assert far.min() < 0.15
+    assert abs(now.skeletons[i][..., 1].min() - now.floor) < 0.1
+    player.controls["skeleton"].value = False
+    assert not any(player.scene.layers.values())
 
 
 def test_a_target_that_nothing_asks_for_lies_on_the_body(player):

@@ -98,6 +98,57 @@ def test_the_picture_keeps_its_settings_when_the_figures_change(bench):
     assert control(bench, "zoom").value == 1.0
 
 
+def test_views_are_shown_by_control_or_key_and_stay_when_the_figures_change(bench):
+    control(bench, "views").value = "4"
+    assert bench.scene.views == 4
+    bench.scene.driver.on_act("v")
+    bench.report()
+    assert control(bench, "views").value == "1"
+    bench.scene.driver.on_act("v")
+    bench.report()
+    control(bench, "figures").value = "all, side by side"
+    assert bench.scene.views == 2
+    bench.begin_again()
+    assert bench.scene.views == 1
+
+
+def test_the_recorded_skeleton_is_there_while_a_recording_is_followed(bench):
+    control(bench, "layer.recorded skeleton").value = True
+    assert "do not follow a recording" in bench.status.said
+    bench.draw()
+    assert [len(one) for one in bench.scene.now.skeletons] == [0]
+    control(bench, "motion").value = "recorded"
+    bench.session.tick()
+    bench.draw()
+    (bones,) = bench.scene.now.skeletons
+    assert len(bones) > 20
+    assert abs(bones).max() < 1.2  # it hangs at the pelvis, which is the human's origin
+    control(bench, "figures").value = "all, overlaid"
+    bench.draw()
+    assert len(bench.scene.now.skeletons) == len(bench.scene.stage)
+
+
+def test_hip_knee_and_ankle_run_on_the_norms_band_while_unfolded(bench):
+    folded = bench.norm.bands.png
+    for _ in range(80):
+        bench.session.tick()
+    bench.draw()
+    assert bench.norm.bands.png == folded
+    bench.norm.selected_index = 0
+    assert "shown hip" in bench.norm.bands.alt
+    was = bench.norm.bands.png
+    for _ in range(10):
+        bench.session.tick()
+    bench.draw()
+    assert bench.norm.bands.png != was
+    bench.session.by_hand = True
+    bench.norm.follow()
+    for _ in range(10):
+        bench.session.tick()
+    bench.draw()
+    assert "no stride yet" in bench.norm.bands.alt
+
+
 def test_to_begin_again_puts_controls_and_picture_back(bench):
     first = {title: panel.values for title, panel in bench.panels.items()}
     control(bench, "method").value = "sdls"
