@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 from tests.browser.conftest import READY, Notebook
@@ -72,4 +73,40 @@ def test_a_hand_is_pulled_by_keys_and_the_sliders_follow(open_notebook: Any) -> 
     assert notebook.kernel("any(c.value % 1 for c in poser.controls.values())")  # between steps
     notebook.shot("00_pulled")
     assert notebook.kernel("poser.status.wrong") == ""
+    assert notebook.errors == []
+
+
+def test_a_path_is_drawn_by_mouse_and_set_by_keys(open_notebook: Any) -> None:
+    notebook = open_notebook("11_beyond.ipynb")
+    page = notebook.page
+    notebook.run_cell("GaitPlayer(pad=True)")
+    plane = page.locator(".ikteach-plane")
+    plane.wait_for(timeout=READY)
+    plane.scroll_into_view_if_needed()
+    box = plane.bounding_box()
+    assert box
+    x, y, size = box["x"], box["y"], box["width"]
+    page.mouse.move(x + 0.72 * size, y + 0.4 * size)
+    page.mouse.down()
+    for share in np.linspace(0, 2 * np.pi, 30):
+        across, up = 0.64 + 0.08 * np.cos(share), 0.4 - 0.08 * np.sin(share)
+        page.mouse.move(x + across * size, y + up * size)
+    page.mouse.up()
+    notebook.settle("drawer.session.gait.name", "drawn")
+    at = notebook.kernel("drawer.motion.pad.seen(drawer.motion.pad.points).tolist()")
+    half = notebook.kernel("drawer.motion.pad.plane.half")
+    middle = np.mean(at, axis=0) / half
+    assert middle == pytest.approx([2 * 0.64 - 1, 1 - 2 * 0.4], abs=0.03)
+    notebook.shot("11_drawn")
+    knob = page.locator(".ikteach-knob")
+    knob.focus()
+    for key in ("Enter", "ArrowRight", "ArrowRight", "Enter", "ArrowUp", "Enter", "Backspace"):
+        page.keyboard.press(key)
+    notebook.settle("len(drawer.motion.pad.points)", 2)
+    assert knob.get_attribute("aria-valuetext") == notebook.kernel("drawer.motion.pad.plane.said")
+    notebook.press("Go along them")
+    notebook.settle("drawer.motion.pad.status.said.startswith('hand.l goes along')", True)
+    notebook.kernel("None", "drawer.session.undo(); drawer.report()")
+    notebook.settle("len(drawer.motion.pad.points) > 60", True)
+    assert notebook.kernel("drawer.status.wrong + drawer.motion.pad.status.wrong") == ""
     assert notebook.errors == []

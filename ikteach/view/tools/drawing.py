@@ -24,7 +24,7 @@ from ikteach.view.widgets.layout import Arranged
 from ikteach.view.widgets.plane import Plane, Stroke
 
 DRAWN = "drawn"  # what the motion is called
-SIDES = ("side", "front", "top")
+SIDES = ("front", "side", "top")
 ACROSS = {"side": "how far to the left", "front": "how far ahead", "top": "how high"}
 LABELS = {"side": ("◂ ahead", "up"), "front": ("to its left ▸", "up"), "top": ("left ▸", "▾ ahead")}
 NEARLY = 0.01  # of the body's reach: what is missed by less is within reach
