@@ -65,7 +65,7 @@ class Workbench(Live):
         self.panels = {panel.title: panel for panel in self._make_panels()}
         self.choosing = self.panels["Method"].controls["method"]
         self.watch(self.scene)
-        self.bar = self._make_bar()
+        self.bar = _bar(self)
         self._drawer = widgets.Accordion(
             [
                 *(panel.widget for panel in self.panels.values()),
@@ -94,20 +94,6 @@ class Workbench(Live):
             GaitPanel("Speed", session, ("Speed",), act),
             GaitPanel("Target position", session, swings, act, self.targets),
         ]
-
-    def _make_bar(self) -> Panel:
-        row = {
-            "playing": self.play_button,
-            "step": Does(button("Step"), self.step),
-            "undo": Does(button("Undo"), self.undo),
-            "reset": Does(button("Reset"), self._reset),
-            "scrub": Does(button("Look back"), self.scrub),
-            "live": Does(button("Back to now"), self._back_to_now),
-            "begin": Does(button("Begin again"), self.begin_again),
-            "quit": Does(button("Quit"), self.quit),
-        }
-        row["begin"].control.layout.display = "none"  # until nobody can run the cell: `stay`
-        return Panel("Session", [row], guard=self.guarded)
 
     # What the loop calls.
 
@@ -283,6 +269,22 @@ class Workbench(Live):
             self.replay.close()
             self.replay = None
             self.status.say("")
+
+
+def _bar(bench: Workbench) -> Panel:
+    """Make the buttons of the clock."""
+    row = {
+        "playing": bench.play_button,
+        "step": Does(button("Step"), bench.step),
+        "undo": Does(button("Undo"), bench.undo),
+        "reset": Does(button("Reset"), bench._reset),
+        "scrub": Does(button("Look back"), bench.scrub),
+        "live": Does(button("Back to now"), bench._back_to_now),
+        "begin": Does(button("Begin again"), bench.begin_again),
+        "quit": Does(button("Quit"), bench.quit),
+    }
+    row["begin"].control.layout.display = "none"  # until nobody can run the cell: `stay`
+    return Panel("Session", [row], guard=bench.guarded)
 
 
 def _session(options: dict[str, Any]) -> Session:
