@@ -21,6 +21,8 @@ from ikteach.publish.pack.parts import Asked, Chapter, Exit, Open, Stub, ToTry
 from ikteach.publish.pack.projects import projects
 from ikteach.publish.pack.slides import Deck
 from ikteach.publish.pack.syllabus import syllabi
+from ikteach.view import GaitPlayer, Simulator, Workbench
+from ikteach.view.chapters.comparison import Race
 from tests.browser.conftest import open_browser
 from tests.publish.gift import read
 
@@ -174,26 +176,35 @@ def links(page: str) -> Iterator[tuple[str, str]]:
 
 
 def test_links_open_figures_in_states_that_they_have(decks: dict[str, str]) -> None:
-    asked = {page.stem: page for page in (ROOT / "ikteach/serve/lecture/pages").glob("*.ipynb")}
+    figures = {
+        "gait": GaitPlayer(slot="gait page"),
+        "race": Race(slot="race page"),
+        "simulator": Simulator(slot="simulator page"),
+        "workbench": Workbench(slot="workbench page"),
+    }
+    assert set(figures) == {p.stem for p in (ROOT / "ikteach/serve/lecture/pages").glob("*.ipynb")}
     opened = set()
     for chapter in COURSE:
         for server, place in links(decks[chapter.number]):
-            path = urlsplit(place).path
+            path, state = urlsplit(place).path, dict(parse_qsl(urlsplit(place).query))
             if server == "lab":
-                assert (NOTEBOOKS / path.removeprefix("lab/tree/")).is_file()
+                assert path == f"lab/tree/{chapter.file}"
                 continue
             name = path.removeprefix("voila/render/").removesuffix(".ipynb")
-            assert name in asked
-            assert parse_qsl(urlsplit(place).query)
+            assert state
+            tries.known(figures[name], state)  # LookupError for a control of another figure
             opened.add(name)
-    assert opened == set(asked)
+    assert opened == set(figures)
+    for figure in figures.values():
+        figure.close()
 
 
 def test_a_state_is_written_as_an_address() -> None:
     state = {"method": "cramer, mended", "forward": True, "cursor": [0.3, -0.2, 0.3], "speed": 9}
     assert query(state) == "method=cramer,%20mended&forward=on&cursor=0.3,-0.2,0.3&speed=9"
     assert lecture_page("GaitPlayer") == "gait.ipynb"
-    assert lecture_page("SvdBench") is None
+    assert lecture_page("Workbench") == "workbench.ipynb"
+    assert [lecture_page(kind) for kind in ("SvdBench", "Bench", "Player")] == [None] * 3
 
 
 def test_a_changed_notebook_changes_its_slides(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 """Addresses that open a live figure in a state."""
 
 import json
+import re
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
@@ -52,6 +53,6 @@ def lecture_page(kind: str) -> str | None:
     for page in sorted(LECTURE.glob("*.ipynb")):
         cells = json.loads(page.read_text("utf-8"))["cells"]
         code = "".join("".join(c["source"]) for c in cells if c["cell_type"] == "code").lower()
-        if f"{kind.lower()}()" in code:
+        if re.search(rf"\b{kind.lower()}\(\)", code):
             return page.name
     return None

@@ -79,13 +79,12 @@ class Deck:
     @property
     def page(self) -> str:
         """The whole page of HTML."""
-        script, style = (
-            Markup((HERE / f"slides.{kind}").read_text("utf-8")) for kind in ("js", "css")
-        )
+        script = Markup("<script>{}</script>").format(_own("js"))
+        style = Markup("<style>{}</style>").format(_own("css"))
         slides = Markup("\n").join(
             _section(i, slide, self.chapter.title) for i, slide in enumerate(self.slides, 1)
         )
-        page = Markup((HERE / "slides.html").read_text("utf-8"))
+        page = _own("html")
         return page.format(title=self.chapter.title, style=style, script=script, slides=slides)
 
     def _opening(self) -> Iterator[Slide]:
@@ -213,6 +212,11 @@ class Deck:
         where = "At home" if block.home else "In class"
         clock = f"{where}, minutes {block.begin} to {block.begin + block.minutes}, {block.who}. "
         return rendered(f"*{clock}Cell `{cell}`.*\n\n{text}", self.chapter.path.parent)
+
+
+def _own(kind: str) -> Markup:
+    """Read the script or the style of all slides."""
+    return Markup((HERE / f"slides.{kind}").read_text("utf-8"))
 
 
 def _section(number: int, slide: Slide, chapter: str) -> Markup:
