@@ -4,8 +4,10 @@
 
 Reports poses drawn a second when 30 and 60 are asked, without and with every layer, and what each
 costs; the time from a move of the mouse that drags a target to the first pose drawn that was solved
-for it; and that a page which could not draw for a while goes on with the newest frame. Trust it on
-a machine that does nothing else. The bars: one figure 30 and 50, four figures 20; 60 ms; 1 message.
+for it; and that a page which could not draw for a while goes on with the newest frame; then the
+poses a second of one figure in one view, two and four. Trust it on a machine that does nothing
+else. The bars: one figure 30 and 50, four figures 20, one in any number of views 30; 60 ms; 1
+message.
 """
 
 import statistics
@@ -91,6 +93,7 @@ new MutationObserver(() => {{
   noted.began = null;
 }}).observe(document, {{ subtree: true, attributes: true, attributeFilter: ["data-change"] }});
 """
+VIEWS = "several = build(1); several"
 AT = """
 from ikteach.view.stage.stage import picture_axes
 eye = np.array(scene.camera.position)
@@ -104,7 +107,7 @@ def main(seconds: float) -> None:
     """Start everything, and print what one figure and four figures reach."""
     with lab_and_page() as (lab, page):
         counts = ["build(1)", "build(4)"]
-        cells = [nbformat.v4.new_code_cell(cell) for cell in (CELL, *counts)]
+        cells = [nbformat.v4.new_code_cell(cell) for cell in (CELL, *counts, VIEWS)]
         book = nbformat.v4.new_notebook(cells=cells)
         book.metadata.kernelspec = {"name": "python3", "display_name": "Python 3"}
         nbformat.write(book, lab.folder / "scene.ipynb")
@@ -124,6 +127,12 @@ def main(seconds: float) -> None:
                 rate(notebook, seconds, asked, "every layer")
             stop(notebook)
             page.locator(".jp-OutputArea-output").first.evaluate("one => one.remove()")
+        notebook.run_figure(VIEWS)
+        page.wait_for_selector(".ikteach-stage", timeout=READY)
+        for views in (1, 2, 4):
+            notebook.kernel("None", f"scene.views = {views}")
+            for asked in (30, 60):
+                rate(notebook, seconds, asked, f"views: {views}")
         print(f"errors in the page: {notebook.errors or 'none'}")
 
 

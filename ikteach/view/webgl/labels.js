@@ -34,7 +34,8 @@ export class Labels {
     panes.forEach((pane, i) => {
       const one = this.#one(i);
       const words = i === chosen ? `▸ ${pane.title}` : pane.title;
-      if (one.textContent !== words) one.textContent = words;
+      const label = one.children[0];
+      if (label.textContent !== words) label.textContent = words;
       one.classList.toggle("ikteach-chosen", i === chosen);
       const [left, top, width, height] = pane.place.map((share) => `${100 * share}%`);
       Object.assign(one.style, { left, top, width, height });
@@ -43,7 +44,7 @@ export class Labels {
 
   /** @param {number} i */
   #one(i) {
-    while (this.#box.children.length <= i) this.#box.append(element("span"));
+    while (this.#box.children.length <= i) this.#box.append(element("span", {}, element("b")));
     return /** @type {HTMLElement} */ (this.#box.children[i]);
   }
 }
