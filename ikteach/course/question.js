@@ -30,7 +30,11 @@ function render({ model, el }) {
   }
   update();
   el.append(form);
-  return listen(model, { "change:locked change:status change:asked": update });
+  return listen(model, {
+    "change:locked": update,
+    "change:status": update,
+    "change:asked": update,
+  });
 }
 
 /**

@@ -1,4 +1,5 @@
 import assert from "node:assert/strict";
+import { readdirSync, readFileSync } from "node:fs";
 import { mock, test } from "node:test";
 import { number } from "../../ikteach/course/fields.js";
 import { exchanged } from "../../ikteach/course/ranking.js";
@@ -132,4 +133,14 @@ test("a point of a plane is found again under the pointer, and never beyond the 
       at,
     );
   assert.deepEqual(underPoint([1.2, -3], 2), [2, 2]);
+});
+
+test("models are listened to by single names: marimo's know no lists of them", () => {
+  const house = new URL("../../ikteach/", import.meta.url);
+  const scripts = readdirSync(house, { recursive: true }).filter((name) => /\.js$/.test(name));
+  assert.ok(scripts.length > 20);
+  for (const name of scripts) {
+    const found = readFileSync(new URL(name, house), "utf8").match(/"change:\w+ [^"]*"/g);
+    assert.equal(found, null, name);
+  }
 });

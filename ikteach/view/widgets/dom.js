@@ -56,14 +56,15 @@ export function take(event) {
 }
 
 /**
- * Call each act on its events of a model; call the answer to stop that.
+ * Call each act on its event of a model (one name: marimo's models know no lists of names); call the
+ * answer to stop that.
  * @param {Source} source
  * @param {Record<string, Act>} acts
  */
 export function listen(source, acts) {
-  for (const [events, act] of Object.entries(acts)) source.on(events, act);
+  for (const [event, act] of Object.entries(acts)) source.on(event, act);
   return () => {
-    for (const [events, act] of Object.entries(acts)) source.off(events, act);
+    for (const [event, act] of Object.entries(acts)) source.off(event, act);
   };
 }
 
