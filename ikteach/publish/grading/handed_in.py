@@ -259,7 +259,7 @@ class Uses(NamedTuple):
 
     @classmethod
     def of(cls, statement: ast.stmt) -> "Uses":
-        """Look them up as Python does, without those of its functions."""
+        """Look them up as Python does."""
         try:
             top = symtable.symtable(ast.unparse(statement), "<answer>", "exec")
         except (SyntaxError, ValueError):  # such as `return` outside of a function
