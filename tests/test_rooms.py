@@ -51,7 +51,7 @@ OTHERS = {  # what a room may import from elsewhere, beside numpy and the standa
     "view": SCREEN | {"pandas", "PIL"},
     "course": SCREEN | {"pandas"},
     "publish": {"nbformat", "nbclient", "nbconvert", "latex2mathml", "pygments", "pandas"}
-    | {"docutils", "hatchling", "jupyter_core", "packaging", "sphinx"},
+    | {"IPython", "docutils", "hatchling", "jupyter_core", "packaging", "sphinx"},
     "serve": {"voila", "tornado", "traitlets", "jupyter_client", "jupyter_core"}
     | {"jupyter_server", "jupyterlab_server", "ipykernel"},
 }

@@ -40,9 +40,9 @@ LARGEST_REQUEST = 2**30  # bytes of a request
 LARGEST_REPLY = 2**23  # bytes
 SIZE = struct.Struct(">Q")
 DONE, ENDED, GONE = b"", b"ended", b"gone"  # the judge is; the answer has; before it replied
-PACKAGE = Path(__file__).parents[2]
+INSTALLED = Path(__file__).parents[2]
 # What an answer may read: Python, the packages, and what these need.
-READABLE = [sys.prefix, sys.base_prefix, str(PACKAGE), str(Path(np.__file__).parents[1])]
+READABLE = [sys.prefix, sys.base_prefix, str(INSTALLED), str(Path(np.__file__).parents[1])]
 DEVICES = ("/dev/null/", "/dev/urandom/", "/usr/share/zoneinfo/")
 SECRET = ("ikteach.course.solutions", "ikteach.course.exercises")
 STARTING = "_posixsubprocess"  # starts programs, and the hook is not asked
@@ -234,7 +234,7 @@ def _limit() -> None:
 
 
 def guard(home: str) -> Callable[[str, tuple[Any, ...]], None]:
-    """Make the hook that refuses whatever an answer does not need.
+    """Make the hook that refuses what no answer needs.
 
     Everything that it uses is bound here, where an answer cannot put another in its place; and of
     a path it looks at the letters alone, as the functions of `os.path` can be changed.

@@ -100,7 +100,10 @@ def _who(graded: list[Graded], roster: pd.DataFrame | None, columns: list[str]) 
 
 
 def rows_of(hand_ins: list[HandIn], roster: pd.DataFrame) -> list[Any]:
-    """Find each student's row of a roster; RefusedError names all who have none of their own."""
+    """Find each student's row of a roster.
+
+    RefusedError names all who have none of their own.
+    """
     called = {row: _called(cells) for row, cells in roster.iterrows()}
     rows: list[Any] = []
     amiss = []

@@ -49,7 +49,12 @@ class HandIn(NamedTuple):
 
 
 class HandedFile(NamedTuple):
-    """A file to read, what it is called within the folder, and why it cannot be read, or ""."""
+    """A file that was handed in.
+
+    path       where it can be read
+    name       what it is called within the folder
+    hindrance  why it cannot be read, or ""
+    """
 
     path: Path
     name: Path
@@ -190,7 +195,7 @@ def answers(cells: list[str]) -> dict[str, str]:
     A later check of a key replaces an earlier one.
     """
     found: dict[str, str] = {}
-    before: list[tuple[ast.stmt, Names]] = []
+    before: list[tuple[ast.stmt, Uses]] = []
     for text in cells:
         try:
             statements = ast.parse(plain_python(text[:LONGEST])).body
@@ -201,14 +206,14 @@ def answers(cells: list[str]) -> dict[str, str]:
             for key, answer in _checks(statement):
                 lines = map(ast.unparse, _needed(before, answer))
                 found[key] = "\n".join([*lines, f"answer = {ast.unparse(answer)}"])
-            before.append((statement, Names.of(statement)))
+            before.append((statement, Uses.of(statement)))
     return found
 
 
 def plain_python(text: str) -> str:
-    """Drop the magic of a cell; a line that begins with % may also be Python."""
+    """Drop the magic of a cell, as Jupyter understands it."""
     try:
-        ast.parse(text)
+        ast.parse(text)  # a line that begins with % may also be Python
     except SyntaxError:
         body = re.sub(r"\A\s*%%.*", "", text)  # of `%%time` and the like
         transformer: Any = TransformerManager
@@ -230,10 +235,10 @@ def _called(function: ast.expr) -> str:
     return getattr(function, "id", "") or getattr(function, "attr", "")
 
 
-def _needed(before: list[tuple[ast.stmt, "Names"]], answer: ast.expr) -> list[ast.stmt]:
+def _needed(before: list[tuple[ast.stmt, "Uses"]], answer: ast.expr) -> list[ast.stmt]:
     """List the statements that bind or change what an answer uses, in order."""
     statements, names = [one for one, _ in before], [names for _, names in before]
-    wanted = set(Names.of(ast.Expr(answer)).used)
+    wanted = set(Uses.of(ast.Expr(answer)).used)
     kept = {i for i, one in enumerate(names) if "*" in one.bound}  # from … import *
     while more := {i for i, one in enumerate(names) if one.bound & wanted} - kept:
         kept |= more
@@ -245,16 +250,16 @@ def _needed(before: list[tuple[ast.stmt, "Names"]], answer: ast.expr) -> list[as
     ]
 
 
-class Names(NamedTuple):
-    """The names of the notebook that a statement binds, imports and uses, at once or later."""
+class Uses(NamedTuple):
+    """The names of a notebook that a statement binds, imports and uses."""
 
     bound: set[str]
     imported: set[str]
     used: set[str]
 
     @classmethod
-    def of(cls, statement: ast.stmt) -> "Names":
-        """Look them up as Python does; those of its functions are their own."""
+    def of(cls, statement: ast.stmt) -> "Uses":
+        """Look them up as Python does."""
         try:
             top = symtable.symtable(ast.unparse(statement), "<answer>", "exec")
         except (SyntaxError, ValueError):  # such as `return` outside of a function

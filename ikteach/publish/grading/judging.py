@@ -26,8 +26,8 @@ from ikteach.files import bounded
 from ikteach.publish.grading.apart import (
     DONE,
     ENDED,
+    INSTALLED,
     LARGEST_REPLY,
-    PACKAGE,
     READABLE,
     receive,
     send,
@@ -37,7 +37,7 @@ from ikteach.publish.parser import RefusedError
 
 STARTING = 60.0  # [s] until Python runs and has its imports
 PATIENCE = 3.0  # times the seconds of the exercise: a machine that judges a class is a busy one
-SECRET = [PACKAGE / "course" / name for name in ("solutions", "exercises")]
+SECRET = [INSTALLED / "course" / name for name in ("solutions", "exercises")]
 # Where people keep what is theirs; of what lies there an answer sees Python and the packages.
 PRIVATE = ["/home", "/media", "/mnt", "/root", "/run", "/srv", "/tmp", "/var", str(Path.home())]
 MODULE = "ikteach.publish.grading.apart"
@@ -146,7 +146,7 @@ class Judging:
         )
 
     def _start(self) -> None:
-        environment = {"PYTHONPATH": str(PACKAGE.parent), "HOME": self._folder, "PATH": ""}
+        environment = {"PYTHONPATH": str(INSTALLED.parent), "HOME": self._folder, "PATH": ""}
         environment |= {"LANG": "C.UTF-8", "PYTHONDONTWRITEBYTECODE": "1", "TMPDIR": self._folder}
         environment |= {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
         if root := os.environ.get("SYSTEMROOT"):  # Windows starts nothing without it
