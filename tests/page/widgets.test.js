@@ -10,6 +10,7 @@ import { floats } from "../../ikteach/view/widgets/binary.js";
 import { nearest } from "../../ikteach/view/widgets/curve.js";
 import { projection, RADIUS } from "../../ikteach/view/widgets/globe.js";
 import { guarded } from "../../ikteach/view/widgets/guarded.js";
+import { thinned } from "../../ikteach/view/widgets/pen.js";
 import { onPlane, overlap, underPoint } from "../../ikteach/view/widgets/plane.js";
 import { Element, Model } from "./page.js";
 
@@ -143,4 +144,19 @@ test("models are listened to by single names: marimo's know no lists of them", (
     const found = readFileSync(new URL(name, house), "utf8").match(/"change:\w+ [^"]*"/g);
     assert.equal(found, null, name);
   }
+});
+
+test("a long stroke is thinned, and keeps its ends", () => {
+  const stroke = Array.from({ length: 2501 }, (_, i) => [i, 0]);
+  const kept = thinned(stroke, 1000);
+  assert.ok(kept.length <= 1001);
+  assert.deepEqual(
+    [kept[0], kept[1], kept.at(-1)],
+    [
+      [0, 0],
+      [3, 0],
+      [2500, 0],
+    ],
+  );
+  assert.equal(thinned(stroke.slice(0, 7), 1000).length, 7);
 });

@@ -159,8 +159,9 @@ def session_words(session: Session) -> str:
     """
     far = ", ".join(told(session.tree, session.effectors, session.error))
     wounded = "wounded, " if session.gait.wound else ""
-    who = "human" if isinstance(session.gait, Gait) else "figure"
-    does = f"{session.gait.name} by" if not session.by_hand else "moved by hand, solved by"
+    sines, name = isinstance(session.gait, Gait), session.gait.name
+    who, does = ("human", f"{name} by") if sines else ("figure", f"motion {name}, by")
+    does = "moved by hand, solved by" if session.by_hand else does
     return f"A {who}, {wounded}{does} {session.method}. From its target: {far}."
 
 

@@ -18,7 +18,7 @@ from ikteach.view.chapters.gait import session_table
 from ikteach.view.live.live import Live
 from ikteach.view.live.panel import Does, Panel, button, choice, dropdown, slider
 from ikteach.view.live.strips import Strips
-from ikteach.view.stage.lengths import Lengths
+from ikteach.view.stage.lengths import misses, units
 from ikteach.view.stage.stage import sides_of
 from ikteach.view.webgl.scene import Scene
 from ikteach.view.widgets.layout import Arranged
@@ -115,9 +115,9 @@ class AskedPlayer(Live):
     def words(self) -> str:
         """The picture in words, for people who cannot see it."""
         session = self.session
-        length = Lengths.of(session.tree, session.effectors)
-        each = zip(session.effectors.names, session.error, strict=True)
-        far = ", ".join(f"{name} {length(d)}" for name, d in each)
+        off, effectors = misses(session.effectors, session.error), session.effectors
+        each = zip(effectors.names, units(session.tree, effectors), off, strict=True)
+        far = ", ".join(f"{name} {unit(d)}" for name, unit, d in each)
         return f"{self._who}, by {session.method}. From its target: {far}."
 
     def draw(self) -> None:

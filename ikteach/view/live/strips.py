@@ -46,7 +46,8 @@ class Strips(Living, anywidget.AnyWidget):
             panels=[
                 {
                     "title": "each effector, shown method"
-                    + ("" if session.effectors.w.all() else "; directions: 2ℓ sin(φ/2)"),
+                    if session.effectors.w.all()
+                    else "each effector; directions 2ℓ sin(φ/2)",
                     "lines": _lines(session.effectors.names),
                     **distance,
                 },

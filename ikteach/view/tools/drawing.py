@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from itertools import groupby
+from math import ceil
 from typing import Any
 
 import numpy as np
@@ -82,8 +83,9 @@ class DrawingPad(Cell):
         if effector is not None:
             heart(self.figure, effector)  # whose errors name it
         sides = SIDES if self._normal is None else (PLANE,)
-        radius = self._ball.radius
-        depth = slider("depth [m]", 0.0, -radius, radius, round_step(2 * radius, 200), **look)
+        step = round_step(2 * self._ball.radius, 200)
+        far = step * ceil(self._ball.radius / step)
+        depth = slider("depth [m]", 0.0, -far, far, step, **look)
         depth.disabled = self._normal is not None
         seconds = slider("once round [s]", 2.0, 0.5, 10.0, 0.1, **look)
         which = dropdown("Curve of", names, effector or names[-1], **look)
