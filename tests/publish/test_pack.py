@@ -17,12 +17,13 @@ from ikteach.publish.delivery import chapters
 from ikteach.publish.pack import goals, plan, teaching
 from ikteach.publish.pack.bank import families
 from ikteach.publish.pack.links import lecture_page, query
-from ikteach.publish.pack.parts import Asked, Chapter, Exit, Open, Stub, ToTry
+from ikteach.publish.pack.parts import Chapter, Exit, Open, Posed, Stub, ToTry
 from ikteach.publish.pack.projects import projects
 from ikteach.publish.pack.slides import Deck
 from ikteach.publish.pack.syllabus import syllabi
-from ikteach.view import GaitPlayer, Simulator, Workbench
+from ikteach.view import GaitPlayer, Simulator, WalksPlayer, Workbench
 from ikteach.view.chapters.comparison import Race
+from ikteach.view.chapters.robots import robot_player
 from tests.browser.conftest import open_browser
 from tests.publish.gift import read
 
@@ -113,7 +114,7 @@ def test_slides_say_what_the_notebook_says(chapter: Chapter, decks: dict[str, st
     slides = "".join(re.findall(r"<section.*?</section>", page, re.DOTALL))
     shown = words(slides)
     wanted = [chapter.title, *chapter.goals]
-    for part in chapter.of(Asked):
+    for part in chapter.of(Posed):
         wanted += [part.question, *part.choices]
     for part in chapter.of(Exit):
         wanted += [part.quiz.question, *part.quiz.choices]
@@ -141,7 +142,7 @@ def test_answers_are_in_the_notes_alone(chapter: Chapter, decks: dict[str, str])
         for piece in pieces(part.answer):
             assert piece in notes
             assert piece not in slides
-    for key in {part.key for part in chapter.of(Asked)} & set(TOLD.beliefs):
+    for key in {part.key for part in chapter.of(Posed)} & set(TOLD.beliefs):
         belief = TOLD.beliefs[key]
         for said in (belief.says, belief.answer):
             assert said in notes
@@ -180,6 +181,8 @@ def test_links_open_figures_in_states_that_they_have(decks: dict[str, str]) -> N
         "gait": GaitPlayer(slot="gait page"),
         "race": Race(slot="race page"),
         "simulator": Simulator(slot="simulator page"),
+        "robot": robot_player(slot="robot page"),
+        "walks": WalksPlayer(slot="walks page"),
         "workbench": Workbench(slot="workbench page"),
     }
     assert set(figures) == {p.stem for p in (ROOT / "ikteach/serve/lecture/pages").glob("*.ipynb")}
@@ -194,7 +197,7 @@ def test_links_open_figures_in_states_that_they_have(decks: dict[str, str]) -> N
             assert state
             tries.known(figures[name], state)  # LookupError for a control of another figure
             opened.add(name)
-    assert opened == set(figures)
+    assert opened == set(figures) - {"robot"}  # chapter 12 has two figures of its class
     for figure in figures.values():
         figure.close()
 

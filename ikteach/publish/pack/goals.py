@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from ikteach.publish.pack.bank import families
-from ikteach.publish.pack.parts import Asked, Chapter, Exit, Stub
+from ikteach.publish.pack.parts import Chapter, Exit, Posed, Stub
 from ikteach.publish.pack.projects import Project
 from ikteach.publish.pack.teaching import Belief, data
 
@@ -76,7 +76,7 @@ def _goal(chapter: Chapter, goal: str, keys: Sequence[str], beliefs: Mapping[str
     def of(kind: type) -> list[str]:
         return [part.key for part in chapter.of(kind) if part.key in keys]
 
-    predictions = of(Asked)
+    predictions = of(Posed)
     opened = [key for key in keys if key in chapter.keys and " " in key]
     bank, projects = (
         [key.removeprefix(f"{word} ") for key in keys if key.startswith(f"{word} ")]

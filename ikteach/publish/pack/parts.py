@@ -34,7 +34,7 @@ class Told(NamedTuple):
         return str(found[-1]) if found else ""
 
 
-class Asked(NamedTuple):
+class Posed(NamedTuple):
     """A prediction, and the cell in which it is revealed."""
 
     cell: str
@@ -91,7 +91,7 @@ class Open(NamedTuple):
     answer: str
 
 
-Part = Told | Asked | Computed | ToTry | Stub | Exit | Open
+Part = Told | Posed | Computed | ToTry | Stub | Exit | Open
 
 
 class Chapter:
@@ -148,7 +148,7 @@ class Chapter:
 
         Predictions, exercises and exit questions, and open questions as `NN cell`.
         """
-        keyed = [part.key for part in self.parts if isinstance(part, Asked | Stub | Exit)]
+        keyed = [part.key for part in self.parts if isinstance(part, Posed | Stub | Exit)]
         return keyed + [f"{self.number} {part.cell}" for part in self.of(Open)]
 
     def _parts(self) -> Iterator[Part]:
@@ -208,9 +208,9 @@ def _run(statements: Sequence[ast.stmt], names: dict[str, Any]) -> None:
     exec(compile(ast.Module([*statements], []), "a cell", "exec"), names)
 
 
-def _predictions(cell: Notebook, names: dict[str, Any]) -> list[Asked]:
+def _predictions(cell: Notebook, names: dict[str, Any]) -> list[Posed]:
     """Run a cell with a `predict` that only notes what it asks."""
-    found: list[Asked] = []
+    found: list[Posed] = []
 
     def note(
         key: str,
@@ -222,7 +222,7 @@ def _predictions(cell: Notebook, names: dict[str, Any]) -> list[Asked]:
         explain: str = "",
     ) -> None:
         words = f"{question} {explain}".strip()
-        found.append(Asked(cell.id, key, words, list(options), numbers, ranking, ""))
+        found.append(Posed(cell.id, key, words, list(options), numbers, ranking, ""))
 
     _import(cell.source, names)
     body = [

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from itertools import groupby
 from typing import NamedTuple
 
-from ikteach.publish.pack.parts import Asked, Chapter, Computed, Exit, Part, Stub, Told, ToTry
+from ikteach.publish.pack.parts import Chapter, Computed, Exit, Part, Posed, Stub, Told, ToTry
 
 # How long parts take beside one another. What a chapter says of its time is shared in these
 # proportions, so that the minutes of a plan always add up to it.
@@ -83,9 +83,9 @@ def _blocks(chapter: Chapter) -> Iterator[Raw]:
 
 
 def _named(kind: type, parts: list[Part], cells: tuple[str, ...]) -> Raw:
-    names = [f"`{part.key}`" for part in parts if isinstance(part, Asked | Stub | Exit)]
+    names = [f"`{part.key}`" for part in parts if isinstance(part, Posed | Stub | Exit)]
     told, n = ", ".join(names), len(parts)
-    if kind is Asked:
+    if kind is Posed:
         return f"Predict {told}", "each locks in an answer", False, cells, QUESTION * n
     if kind is Computed:
         return (

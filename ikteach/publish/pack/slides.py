@@ -14,12 +14,12 @@ from typing import NamedTuple
 from ikteach.markup import Markup
 from ikteach.publish.pack.html import as_list, in_line, inlined, rendered
 from ikteach.publish.pack.links import lecture_page, link
-from ikteach.publish.pack.parts import Asked, Chapter, Computed, Exit, Open, Stub, Told, ToTry
+from ikteach.publish.pack.parts import Chapter, Computed, Exit, Open, Posed, Stub, Told, ToTry
 from ikteach.publish.pack.plan import Block, plan
 from ikteach.publish.pack.stills import still
 from ikteach.publish.pack.teaching import Teaching
 
-HERE = Path(__file__).parent
+LOOKS = Path(__file__).parent / "slides"  # and what a file is: html, css or js
 WORDS = 80  # on a slide, about: a longer text goes on on the next
 WIDE = 1.4  # a picture wider than this has more of the slide
 FORMULA = re.compile(r"\$\$.+?\$\$", re.DOTALL)
@@ -117,9 +117,9 @@ class Deck:
             last = self.slides[-1]
             self.slides[-1] = last._replace(notes=last.notes + notes)
 
-    def _made(self, part: Asked | Computed | ToTry | Stub | Exit | Open) -> Iterator[Slide]:
+    def _made(self, part: Posed | Computed | ToTry | Stub | Exit | Open) -> Iterator[Slide]:
         match part:
-            case Asked():
+            case Posed():
                 yield self._asked(part)
             case Computed():
                 yield self._shown(part)
@@ -137,7 +137,7 @@ class Deck:
                 note = f"**Answers.** {part.answer}"
                 yield from self._text("open", part.text, self._notes(part.cell, note), part.cell)
 
-    def _asked(self, part: Asked) -> Slide:
+    def _asked(self, part: Posed) -> Slide:
         note = f"All lock in an answer, then go on. It is computed in the cell `{part.revealed}`."
         if belief := self._told.beliefs.get(part.key):
             note += f"\n\n**Wrong belief:** {belief.belief}. **Students say:** “{belief.says}”"
@@ -146,7 +146,7 @@ class Deck:
         return Slide("ask", in_line(part.question), body, notes, part.cell)
 
     def _shown(self, part: Computed) -> Slide:
-        asked = {one.key: one for one in self.chapter.of(Asked)}
+        asked = {one.key: one for one in self.chapter.of(Posed)}
         told = [self._told.beliefs[key] for key in part.keys if key in self._told.beliefs]
         notes = self._notes(part.cell, "\n\n".join(f"**{b.belief}?** {b.answer}" for b in told))
         rows = as_list(in_line(asked[key].question) for key in part.keys)
@@ -216,7 +216,7 @@ class Deck:
 
 def _own(kind: str) -> Markup:
     """Read the script or the style of all slides."""
-    return Markup((HERE / f"slides.{kind}").read_text("utf-8"))
+    return Markup(LOOKS.with_suffix(f".{kind}").read_text("utf-8"))
 
 
 def _section(number: int, slide: Slide, chapter: str) -> Markup:
@@ -239,7 +239,7 @@ def _section(number: int, slide: Slide, chapter: str) -> Markup:
     )
 
 
-def _choices(part: Asked) -> Markup:
+def _choices(part: Posed) -> Markup:
     if part.numbers:
         low, high, unit = part.numbers
         return Markup("<p>A number from {:g} to {:g}{}.</p>").format(
