@@ -17,7 +17,8 @@ function controls(camera, from) {
   camera.lookAt(0, 0, 0);
   camera.updateMatrixWorld();
   camera.updateProjectionMatrix();
-  const obj = { target: new Vector3(), enabled: true };
+  const update = () => camera.lookAt(obj.target); // as three's controls do
+  const obj = { target: new Vector3(), enabled: true, update };
   return Object.assign(new Model({ controlling: { obj: camera } }), { obj });
 }
 
@@ -82,6 +83,15 @@ test("views tile the picture, and a pixel is in one of them", () => {
 test("news of names and of cameras may come one by one", () => {
   renderer.traits.controls = renderer.traits.controls.slice(0, 1);
   assert.equal(scene.panes.length, 1);
+});
+
+test("a camera that looked at the origin looks at its target, where that is elsewhere", () => {
+  const [{ camera, controls }] = scene.panes;
+  controls.obj.target.set(0.1, 0.5, 0);
+  scene.panes[0].aim(ASPECT, 1);
+  camera.updateMatrixWorld();
+  const seen = controls.obj.target.clone().project(camera);
+  assert.ok(Math.hypot(seen.x, seen.y) < 1e-9);
 });
 
 test("whatever the pane, what must be seen is in its middle, as large as may be", () => {

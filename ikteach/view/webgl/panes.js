@@ -2,6 +2,8 @@
 
 /** @import { Scene } from "./scene.js" */
 
+/** Controls whose camera looks at their target: three's look at the origin when they are made. */
+const aimed = new WeakSet();
 const TURNED = 0.9998; // cosine of the angle [1.1°] by which a view is no longer what it is called
 /** @typedef {[left: number, top: number, width: number, height: number]} Place */
 
@@ -46,7 +48,9 @@ export class Pane {
    * @param {number} needed width over height of what must be seen
    */
   aim(aspect, needed) {
-    const { camera } = this;
+    const { camera, controls } = this;
+    if (!aimed.has(controls.obj)) controls.obj.update();
+    aimed.add(controls.obj);
     const full = camera.isOrthographicCamera
       ? (camera.right - camera.left) / (camera.top - camera.bottom)
       : camera.aspect;
