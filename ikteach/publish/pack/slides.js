@@ -53,11 +53,11 @@ function tell() {
   page.title = `Notes ${here + 1}`;
   page.body.style.cssText =
     "font: 20px/1.4 system-ui, sans-serif; margin: 1.5rem; max-width: 60rem";
-  page.body.innerHTML = slides[here].nextElementSibling?.innerHTML ?? "";
+  const told = slides[here].nextElementSibling?.childNodes ?? [];
   const next = page.createElement("p");
   const after = slides[here + 1]?.querySelector("h1, h2")?.textContent;
   next.textContent = after ? `Next: ${after}` : "The end.";
-  page.body.prepend(next);
+  page.body.replaceChildren(next, ...[...told].map((node) => page.importNode(node, true)));
 }
 
 /** Open the notes in a window of their own: for the screen that the class does not see. */
