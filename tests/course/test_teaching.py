@@ -96,7 +96,7 @@ def test_0_a_turn_of_a_straight_arm_moves_nothing() -> None:
     poser = Poser(figures.human())
 
     def hand() -> np.ndarray:
-        said = re.sub("<[^>]+>", " ", poser._below.value).split("hand.l")[1]
+        said = re.sub("<[^>]+>", " ", poser._below.value).replace("−", "-").split("hand.l")[1]
         return np.array(said.split()[:3], dtype=float)
 
     rest = hand()
