@@ -197,7 +197,9 @@ def test_picture_and_numbers_are_seen_together(figures: Notebook, made: str) -> 
     page.locator(".ikteach-arranged").last.evaluate("one => one.scrollIntoView()")
     page.evaluate(SETTLED)
     view = page.locator(".jp-NotebookPanel:visible .jp-WindowedPanel-outer").bounding_box()
-    picture = page.locator(f"{CANVAS_OF} canvas, .ikteach-plane").last.bounding_box()
+    picture = page.locator(
+        f"{CANVAS_OF} canvas:visible, .ikteach-plane:visible"
+    ).last.bounding_box()
     control = page.locator(".ikteach-beside :is(.noUi-handle, button)").first.bounding_box()
     assert view is not None
     assert picture is not None

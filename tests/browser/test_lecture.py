@@ -226,7 +226,7 @@ def test_an_address_opens_a_state_and_a_link_leads_back_to_it(lecture: Lecture) 
     page.keyboard.press("l")
     link = page.get_by_label("Link to this")
     link.wait_for(timeout=READY)
-    assert link.input_value() == f"{gait}?method=sdls&motion=running&view=front&speed=12.3"
+    assert link.input_value() == f"{gait}?method=sdls&view=front&motion=running&speed=12.3"
     assert link.evaluate("one => one.selectionEnd - one.selectionStart === one.value.length")
     page.screenshot(path=SHOTS / "lecture_link.png")
     page.keyboard.press("Escape")

@@ -8,6 +8,7 @@ in the homes of a hub.
 
 import argparse
 import asyncio
+import signal
 import threading
 import time
 import webbrowser
@@ -35,6 +36,7 @@ def main(argv: list[str]) -> int:
     print(f"the class is at {server.address}", "Ctrl-C here ends it", sep="\n", flush=True)
     if not options.no_browser:
         threading.Thread(target=webbrowser.open, args=[server.address], daemon=True).start()
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background ignores it
     try:
         asyncio.run(server.serve())
     except KeyboardInterrupt:

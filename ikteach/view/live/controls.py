@@ -16,7 +16,7 @@ def controls(figure: Any) -> dict[str, Any]:
 
 def parts_of(figure: Any) -> list[Any]:
     """List the figure and its parts with controls."""
-    inner = (getattr(figure, name, None) for name in ("panel", "player", "bar"))
+    inner = (getattr(figure, name, None) for name in ("panel", "motion", "player", "bar"))
     own = [part for part in inner if part is not None]
     deeper = [one.panel for one in own if hasattr(one, "panel")]
     return [figure, *getattr(figure, "panels", {}).values(), *own, *deeper]

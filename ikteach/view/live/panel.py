@@ -56,6 +56,7 @@ class Panel:
         self.title, self._shows, self._guard = title, shows, guard
         self.controls: dict[str, Any] = {}
         self._quiet, self.turns = False, Turns()
+        self._due: set[str] = set()  # controls that a person has set, and that are yet to act
         boxes = [self._box(row) for row in rows]
         if folded:
             parts = [widgets.VBox([self._box(row) for row in part]) for part in folded.values()]
@@ -89,8 +90,11 @@ class Panel:
             self._quiet = False
 
     def agree(self) -> None:
-        """Set controls to the values of `shows`, without acting."""
-        self.put(**self._shows())
+        """Set controls to the values of `shows`, without acting.
+
+        What a person has set just now, and has not acted yet, stays.
+        """
+        self.put(**{name: x for name, x in self._shows().items() if name not in self._due})
 
     def restore(self) -> None:
         """Set controls to their first values, without acting."""
@@ -107,19 +111,25 @@ class Panel:
         for name, one in row.items():
             control, act = one if isinstance(one, Does) else Does(one, None)
             self.controls[name] = control
-            self._listen(name, control, _idle if act is None else self._guard(act))
+            self._listen(name, control, _idle if act is None else act)
         made = [self.controls[name] for name in row]
         return made[0] if len(made) == 1 else widgets.HBox(made, layout={"flex_flow": "row wrap"})
 
     def _listen(self, name: str, control: Any, act: Act) -> None:
+        def acting(*value: Any) -> None:
+            self._due.discard(name)
+            act(*value)
+
+        guarded = self._guard(acting)
         if isinstance(control, widgets.Button):
-            control.on_click(lambda _: act())
+            control.on_click(lambda _: guarded())
             return
 
         def changed(change: Any) -> None:
             if not self._quiet:
                 self.turns.ask(name)
-                act(change["new"])
+                self._due.add(name)
+                guarded(change["new"])
 
         control.observe(changed, "value")
 

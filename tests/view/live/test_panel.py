@@ -72,6 +72,25 @@ def test_a_guard_stands_around_every_action(heard):
     assert heard == [(True, "guarded")]
 
 
+def test_what_is_set_and_waits_to_act_stays_when_controls_agree():
+    waiting, done = [], []
+
+    def guard(act):
+        return lambda *value: waiting.append(lambda: act(*value))
+
+    row = {"motion": Does(choice("Motion", ["walking", "running"]), done.append)}
+    panel = Panel("One", [row], shows=lambda: {"motion": [*done, "walking"][0]}, guard=guard)
+    panel.controls["motion"].value = "running"
+    panel.agree()  # with a session that still walks
+    assert panel.values == {"motion": "running"}
+    waiting.pop()()
+    panel.agree()
+    assert (panel.values, done) == ({"motion": "running"}, ["running"])
+    done[:] = ["walking"]
+    panel.agree()
+    assert panel.values == {"motion": "walking"}
+
+
 def test_rows_and_folded_parts_are_one_panel():
     panel = Panel(
         "All",
