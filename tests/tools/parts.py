@@ -30,6 +30,7 @@ ROUNDED = [  # what solves, and what is said of runs
     *(f"tests/motion/test_{name}.py" for name in ("gait", "rank", "solve", "step", "tracking")),
     *("tests/solvers", "tests/course/test_prose.py"),
 ]
+LOWEST = ["tests/body", *ROUNDED, "tests/study", "tests/view"]
 STYLE = "tests/test_types.py"  # with the newest numpy, pandas, mypy and ruff alone
 NPM = ["npm", "--prefix", "tests/page"]
 RARER = [
@@ -174,7 +175,7 @@ def lanes(folder: Path, full: bool) -> list[list[list[Part]]]:
         Part("computing", [pytest(*COMPUTING, STYLE)]),
         page,
         *(kernel(name, RARER if full else ROUNDED) for name in KERNELS),
-        packages(folder, "lowest-direct", no_browser if full else [*COMPUTING, "tests/view"]),
+        packages(folder, "lowest-direct", no_browser if full else LOWEST),
     ]
     if full:
         browsers.append(engines)
