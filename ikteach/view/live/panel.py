@@ -111,16 +111,17 @@ class Panel:
         for name, one in row.items():
             control, act = one if isinstance(one, Does) else Does(one, None)
             self.controls[name] = control
-            self._listen(name, control, _idle if act is None else act)
+            self._listen(name, control, act)
         made = [self.controls[name] for name in row]
         return made[0] if len(made) == 1 else widgets.HBox(made, layout={"flex_flow": "row wrap"})
 
-    def _listen(self, name: str, control: Any, act: Act) -> None:
+    def _listen(self, name: str, control: Any, act: Act | None) -> None:
         def acting(*value: Any) -> None:
             self._due.discard(name)
-            act(*value)
+            if act is not None:
+                act(*value)
 
-        guarded = self._guard(acting)
+        guarded = acting if act is None else self._guard(acting)  # who only reads ends no error
         if isinstance(control, widgets.Button):
             control.on_click(lambda _: guarded())
             return
@@ -132,10 +133,6 @@ class Panel:
                 guarded(change["new"])
 
         control.observe(changed, "value")
-
-
-def _idle(_: Any) -> None:
-    """Do nothing: the control is only read."""
 
 
 def slider(label: str, value: float, low: float, high: float, step: float, **look: Any) -> Any:

@@ -91,6 +91,14 @@ def test_what_is_set_and_waits_to_act_stays_when_controls_agree():
     assert panel.values == {"motion": "walking"}
 
 
+def test_a_control_that_is_only_read_has_no_guard():
+    """Around an action, a guard says that all is well again, even of what else went wrong."""
+    guards = []
+    panel = Panel("One", [{"read": tick_box("a")}], guard=guards.append)
+    panel.controls["read"].value = True
+    assert (panel.values, guards) == ({"read": True}, [])
+
+
 def test_rows_and_folded_parts_are_one_panel():
     panel = Panel(
         "All",
