@@ -13,7 +13,7 @@ from ikteach.motion.methods import Methods
 from ikteach.motion.path import Motion
 from ikteach.study import distances
 from ikteach.view.live.live import Live
-from ikteach.view.live.panel import Act, Does, Panel, button, choice, dropdown, tick_box
+from ikteach.view.live.panel import Does, Panel, button, choice, dropdown, tick_box
 from ikteach.view.live.strips import SECONDS, Strips
 from ikteach.view.stage.lengths import Lengths, counted, misses, told
 from ikteach.view.stage.stage import sides_of
@@ -109,15 +109,6 @@ class GaitPlayer(Live):
         )
         panel.controls |= self.motion.controls
         return panel
-
-    def _acting(self, act: Act) -> Act:
-        """Guard an action, after which all controls agree with the session."""
-
-        def acting(*value: Any) -> None:
-            act(*value)
-            self._agree()
-
-        return self.guarded(acting)
 
     def _agree(self) -> None:
         self.motion.agree()

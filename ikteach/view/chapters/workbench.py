@@ -15,7 +15,7 @@ from ikteach.solvers import SOLVERS, Solver
 from ikteach.view.chapters.gait import session_table, session_words
 from ikteach.view.live.bands import OnTheNorm
 from ikteach.view.live.live import Live
-from ikteach.view.live.panel import Act, Does, Panel, button
+from ikteach.view.live.panel import Does, Panel, button
 from ikteach.view.live.strips import Strips
 from ikteach.view.tools.files import Keeper
 from ikteach.view.tools.inspector import Glass
@@ -202,15 +202,6 @@ class Workbench(Live):
         self._back_to_now()
         self.session.reset()
         self.scene.clear()
-
-    def _acting(self, act: Act) -> Act:
-        """Guard an action that changes the session, after which all controls agree with it."""
-
-        def acting(*value: Any) -> None:
-            act(*value)
-            self._agree()
-
-        return self.guarded(acting)
 
     def _agree(self) -> None:
         for panel in self.panels.values():

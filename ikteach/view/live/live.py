@@ -11,7 +11,7 @@ from ikteach.motion.live.session import Session
 from ikteach.motion.paths.skeleton import bones_at
 from ikteach.view.live.controls import parts_of
 from ikteach.view.live.link import StateLink
-from ikteach.view.live.panel import Panel, play_button, press
+from ikteach.view.live.panel import Act, Panel, play_button, press
 from ikteach.view.live.preset import link_of
 from ikteach.view.live.strips import EVERY, Strips
 from ikteach.view.webgl.scene import Scene
@@ -163,6 +163,18 @@ class Live(Cell):
         """Draw the change that a control has made."""
         self._changes += 1
         self.wake()
+
+    def _acting(self, act: Act) -> Act:
+        """Guard an action that changes the session, after which all controls agree with it."""
+
+        def acting(*value: Any) -> None:
+            act(*value)
+            self._agree()
+
+        return self.guarded(acting)
+
+    def _agree(self) -> None:
+        """Set controls to what the session does, without acting."""
 
     def wake(self) -> None:
         """Have the loop run if there is something to do.

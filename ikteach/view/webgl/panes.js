@@ -49,8 +49,10 @@ export class Pane {
    */
   aim(aspect, needed) {
     const { camera, controls } = this;
-    if (!aimed.has(controls.obj)) controls.obj.update();
-    aimed.add(controls.obj);
+    if (!aimed.has(controls.obj)) {
+      aimed.add(controls.obj);
+      controls.obj.update();
+    }
     const full = camera.isOrthographicCamera
       ? (camera.right - camera.left) / (camera.top - camera.bottom)
       : camera.aspect;
